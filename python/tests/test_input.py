@@ -102,7 +102,7 @@ def test_files_of_every_format_are_read(result, tmp_path, heights):
         (np.zeros((0, 4)), "heights: "),
         ([[1.0, np.nan], [0.0, 2.0]], r"row 0, column 1 \(from 0\) is NaN"),
         ([[1.0, np.inf], [0.0, 2.0]], r"row 0, column 1 \(from 0\) is inf"),
-        (np.ones((4, 4)), "a flat surface has no contact problem"),
+        (np.ones((4, 4)), "a flat surface in a periodic cell has no contact problem"),
     ],
 )
 def test_heights_that_cannot_be_solved_are_refused(heights, sentence):

@@ -43,7 +43,7 @@ pub enum FormatError {
     #[error("it contains zero bytes, so it is not a text; save it as UTF-8, or UTF-16 with a byte-order mark")]
     ZeroBytes,
     /// The file is compressed with gzip and cannot be decompressed.
-    #[error("cannot be unpacked by gzip: {0}; the file is damaged or truncated")]
+    #[error("cannot be unpacked by gzip: {0}; the file is damaged, truncated or too large")]
     Gzip(String),
     /// The first bytes do not fit the format of the extension.
     #[error("not a valid {format} file: {expected}")]

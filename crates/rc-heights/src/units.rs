@@ -135,7 +135,7 @@ pub enum LengthUnitError {
     UnitOfLevels,
     /// A unit is given for values that are not lengths, on a map without a size.
     #[error(
-        "unit: the values of this channel are not lengths; height_scale (m) says how high one is, so omit unit, or pick another channel"
+        "unit: the values of this channel are not lengths; height_scale is the height (m) of the value 1, so omit unit, or pick another channel"
     )]
     UnitOfNotLength,
     /// A unit is given for a file that names its units.

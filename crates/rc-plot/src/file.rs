@@ -58,7 +58,9 @@ fn with_bitmaps(text: &str, bitmaps: &[String]) -> Result<String, PictureError> 
         let size = placeholder_size(number);
         let tag = format!("width=\"{size}\" height=\"{size}\"");
         let place = rest.find(&tag).and_then(|at| Some((rest[..at].rfind('<')?, at + rest[at..].find('>')? + 1)));
-        let (start, end) = place.ok_or_else(|| PictureError::new("a bitmap has lost its place in the SVG document"))?;
+        let (start, end) = place.ok_or_else(|| {
+            PictureError::new("a bitmap has lost its place in the SVG document (an error of rc; please report it)")
+        })?;
         document.push_str(&rest[..start]);
         document.push_str(image);
         rest = &rest[end..];

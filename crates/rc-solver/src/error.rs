@@ -146,7 +146,9 @@ pub enum OperatorFault {
         largest: f64,
     },
     /// One pressure has two displacements.
-    #[error("a second application differs by {change:.1e} of up to {largest:.1e}; it must be the same each time")]
+    #[error(
+        "a second application differs by {change:.1e}, where displacements are up to {largest:.1e}; it must be the same each time"
+    )]
     Changes {
         /// Maximum difference, in λ.
         change: f64,
@@ -160,7 +162,9 @@ pub enum OperatorFault {
         displacement: f64,
     },
     /// The displacement of a sum is not the sum of displacements.
-    #[error("L(a + b) differs from L a + L b by {difference:.1e} of up to {largest:.1e}; it must be linear")]
+    #[error(
+        "L(a + b) differs from L a + L b by {difference:.1e}, where displacements are up to {largest:.1e}; it must be linear"
+    )]
     Linearity {
         /// Maximum difference, in λ.
         difference: f64,

@@ -22,7 +22,7 @@ pub(super) fn note(mut rows: Vec<(Surface, f64, [f64; 2])>) -> Option<String> {
     let low = brackets.iter().map(|bracket| bracket[0]).fold(f64::INFINITY, f64::min);
     let high = brackets.iter().map(|bracket| bracket[1]).fold(0.0, f64::max);
     Some(format!(
-        "Percolation is lost at a contact area of {} %. This is the mean of {} flows, each along one axis of one surface; they are between {} and {} %.",
+        "Percolation is lost at a contact area of {} %. This is the mean of {} areas, each for the flow along one axis of one surface; they are between {} and {} %.",
         digits(100.0 * mean, 3),
         brackets.len(),
         digits(100.0 * low, 3),
@@ -49,7 +49,7 @@ mod tests {
             vec![row(1, 0.3, [1.0, 2.0]), row(1, 0.5, [0.0, 0.0]), row(2, 0.5, [0.1, 0.0]), row(2, 0.4, [1.0, 1.0])];
         let text = note(rows).expect("flows");
         assert!(
-            text.contains("of 41.7 %. This is the mean of 3 flows") && text.contains("between 30 and 50 %"),
+            text.contains("of 41.7 %. This is the mean of 3 areas") && text.contains("between 30 and 50 %"),
             "{text}"
         );
         assert_eq!(note(Vec::new()), None);

@@ -73,7 +73,7 @@ impl SpotSizes {
             diameters: (0..=counts.len()).map(|k| low * 10_f64.powf(k as f64 / BINS_PER_DECADE)).collect(),
             counts,
             note: format!(
-                "Spots are connected across edges of elements, and across the sides of a periodic cell. Their edges are located between \
+                "Spots are connected across edges of elements, and across the sides of a periodic cell. Their edges are located within \
                  elements. The smallest spots are about as wide as an element, {}, so their number depends on the grid.",
                 engineering(root_of_cell * element.sqrt(), "m")
             ),

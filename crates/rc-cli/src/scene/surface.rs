@@ -166,7 +166,10 @@ impl SurfaceSetup {
             return Err(CliError::in_file(path, message));
         }
         if range[1] <= range[0] && !self.may_be_flat {
-            let message = format_args!("all heights are {:e}; a flat surface has no contact problem", range[1]);
+            let message = format_args!(
+                "all heights are {:e}; a flat surface in a periodic cell has no contact problem",
+                range[1]
+            );
             return Err(CliError::in_file(path, message));
         }
         let spec = GridSpec { nx, ny };

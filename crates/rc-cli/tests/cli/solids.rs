@@ -63,7 +63,7 @@ fn poissons_ratio_of_a_layer_is_that_of_its_material() {
     let refused = place.run(&[&["solve"], &small[..], &["--e-star", "1e9"]].concat());
     assert_refused(&refused, "layer_poisson: must be given with e_star");
     let thin = ["solve", "--waves", "8", "--grid", "128", "--pressure", "1e5", "--layer-thickness", "1e-5"];
-    assert_refused(&place.run(&thin), "layer_thickness: 1e-5 m is below 0.25 of an element of 128 x 128");
+    assert_refused(&place.run(&thin), "layer_thickness: 1e-5 m is below 0.25 of the side of an element");
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn what_does_not_go_with_a_patch_is_refused() {
     for (more, expected) in [
         (&["--kernel", "spectral"][..], "kernel: spectral waves are periodic"),
         (&["--method", "gauss-seidel"], "method: 'gauss-seidel' solves on a periodic cell only"),
-        (&["--border-level", "1"], "a border level needs heights between the points of the grid"),
+        (&["--border-level", "1"], "heights between the points of its grid"),
         (&["--layer-thickness", "1e-3", "--layer-poisson", "0.3"], "boundary: a layer has no free borders"),
         (&["--leakage"], "leakage: the flow is computed on a periodic cell only; omit leakage or boundary"),
         (&["--penetration", "-1"], "penetration"),

@@ -88,7 +88,7 @@ pub(super) fn unzipped(bytes: &[u8]) -> Result<Vec<u8>, FormatError> {
     let read = MultiGzDecoder::new(bytes).take(MOST_UNPACKED + 1).read_to_end(&mut unpacked);
     read.map_err(|cause| FormatError::Gzip(cause.to_string()))?;
     if unpacked.len() as u64 > MOST_UNPACKED {
-        return Err(FormatError::Gzip(format!("it has more than {MOST_UNPACKED} bytes")));
+        return Err(FormatError::Gzip(format!("unpacked, it has more than {MOST_UNPACKED} bytes")));
     }
     Ok(unpacked)
 }

@@ -29,8 +29,11 @@ pub(super) fn step(name: &str, coordinates: &[f64]) -> Result<f64, FormatError> 
     match coordinates.iter().enumerate().position(off) {
         None => Ok(step),
         Some(i) => {
-            let message =
-                format!("{name} is not evenly spaced: value {i} (from 0) is {:e}, the first {first:e}", coordinates[i]);
+            let message = format!(
+                "{name} is not evenly spaced: value {i} (from 0) is {:e}, and even spacing makes it {:e}",
+                coordinates[i],
+                first + i as f64 * step
+            );
             Err(FormatError::Irregular(message))
         }
     }

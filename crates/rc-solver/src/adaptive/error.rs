@@ -67,7 +67,7 @@ pub enum AdaptiveError {
     },
     /// A border level for heights that are known only on a grid.
     #[error(
-        "a border level needs heights between the points of the grid: resample the map on a finer grid, or generate the surface"
+        "a map has no heights between the points of its grid, so a border level is impossible: resample it on a finer grid instead"
     )]
     BorderOfMap,
     /// The surface is flat, so there is nothing to adapt to.

@@ -64,7 +64,7 @@ pub(crate) fn check_thickness(layer: Option<Layer>, kernel: KernelName, grid: Gr
     match (layer, kernel) {
         (Some(layer), KernelName::Love) if layer.thickness < THINNEST_LAYER * spacing => {
             Err(CliError::input(format_args!(
-                "layer_thickness: {:e} m is below {THINNEST_LAYER} of an element of {grid} ({:e} m); give a finer grid",
+                "layer_thickness: {:e} m is below {THINNEST_LAYER} of the side of an element ({:e} m, {grid} elements); give a finer grid",
                 layer.thickness * side,
                 spacing * side
             )))
