@@ -165,8 +165,8 @@ pub trait Kernel: Sync {
 /// A deviation counts as a fault if it exceeds the tolerance of the solve, relative to the maximum displacement.
 ///
 /// The check does not notice a valid operator of the wrong solid, for example with a wrong factor or a different order
-/// of elements. A fault that appears after the check also goes unnoticed, because the certificate uses the same
-/// operator.
+/// of elements. A small fault that appears after the check may also go unnoticed, because the certificate uses the
+/// same operator.
 pub trait Operator: Sync {
     /// Number of elements, which is the length of pressure and displacement.
     fn n_elements(&self) -> usize;
