@@ -39,7 +39,7 @@ class Leakage(NamedTuple):
     permeance_error: list[float | None]
     #: Axis with the larger permeance, ``x`` or ``y``, which :attr:`Result.flux` belongs to. None where nothing flows.
     flow_direction: str | None
-    #: Whether the film connects opposite sides of the cell, and so all its periodic copies.
+    #: Whether the film connects opposite sides of the cell, along x and along y.
     percolates: list[bool]
     #: Gap of the narrowest place of the widest path (m).
     critical_gap: list[float | None]

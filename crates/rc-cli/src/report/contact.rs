@@ -283,10 +283,10 @@ fn certificate(s: &Summary) -> Certificate {
     ]);
     Certificate {
         rows,
-        note: "All errors come from a fresh application of the elastic operator to the pressure that is shown. The first is \
-               relative to the pressure, the next two to the range of heights, and the last to the load. They bound how far the pressure is from the solution of \
-               the discrete problem. The error bar of the area says how far that solution is from the continuous one. The limits \
-               follow from the tolerance of the solve, but that of the load is always the same.",
+        note: "All errors come from a fresh application of the elastic operator to the pressure that is shown. The error in the energy \
+               norm is relative to the pressure. Gap and overlap are relative to the range of heights, and the load to the given \
+               one. The errors bound how far the pressure is from the solution on these elements. The error bar of the area says \
+               how far that is from infinitely fine elements.",
     }
 }
 

@@ -16,7 +16,9 @@ pub(super) fn note(mut rows: Vec<(Surface, f64, [f64; 2])>) -> Option<String> {
         return None;
     }
     if brackets.is_empty() {
-        return Some("Along each axis, the film percolates at all of these loads, or at none.".to_owned());
+        return Some(
+            "On each surface and along each axis, the film percolates at all of its loads, or at none.".to_owned(),
+        );
     }
     let mean = brackets.iter().map(|[low, high]| 0.5 * (low + high)).sum::<f64>() / brackets.len() as f64;
     let low = brackets.iter().map(|bracket| bracket[0]).fold(f64::INFINITY, f64::min);
@@ -53,6 +55,6 @@ mod tests {
             "{text}"
         );
         assert_eq!(note(Vec::new()), None);
-        assert!(note(vec![row(1, 0.3, [1.0, 2.0])]).expect("a flow").contains("at all of these loads, or at none"));
+        assert!(note(vec![row(1, 0.3, [1.0, 2.0])]).expect("a flow").contains("at all of its loads, or at none"));
     }
 }

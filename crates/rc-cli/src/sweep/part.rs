@@ -38,7 +38,7 @@ pub(super) fn resolve(spec: Option<ShardSpec>, out: &Path) -> Result<(Shard, Pat
 fn refuse(error: &JobError) -> CliError {
     let remedy = match error {
         JobError::NoCount { .. } | JobError::Uneven { .. } => "give --shard auto/N, with tasks numbered from 1 to N",
-        JobError::Outside { .. } => "number the tasks from 1, or give --shard i/n",
+        JobError::Outside { .. } => "number the tasks in this range, or give --shard i/n",
         JobError::NotStarted { .. } => "start it by srun, or give --shard i/n",
         _ => "give --shard i/n",
     };

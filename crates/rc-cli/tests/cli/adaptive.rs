@@ -291,5 +291,5 @@ fn border_levels_that_cannot_be_are_refused() {
     refused(&["--border-level", "99999999999"], "10 is the deepest");
     place.write("map.npy", npy("<f8", false, "(128, 128)", &f8(&bumps(128))));
     let output = place.run(&map("solve", "map.npy", &["--pressure", PRESSURE, "--border-level", "1"]));
-    assert_refused(&output, "border_level: a map has no heights between the points");
+    assert_refused(&output, "border_level: a border level needs a surface of waves");
 }

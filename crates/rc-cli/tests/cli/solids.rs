@@ -184,7 +184,7 @@ fn what_does_not_go_with_a_patch_is_refused() {
     for (more, expected) in [
         (&["--kernel", "spectral"][..], "kernel: spectral waves are periodic"),
         (&["--method", "gauss-seidel"], "method: 'gauss-seidel' solves on a periodic cell only"),
-        (&["--border-level", "1"], "heights between the points of its grid"),
+        (&["--border-level", "1"], "a map has no heights between its points"),
         (&["--layer-thickness", "1e-3", "--layer-poisson", "0.3"], "boundary: a layer has no free borders"),
         (&["--leakage"], "leakage: the flow is computed on a periodic cell only; omit leakage or boundary"),
         (&["--penetration", "-1"], "penetration"),

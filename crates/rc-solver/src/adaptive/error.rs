@@ -67,7 +67,7 @@ pub enum AdaptiveError {
     },
     /// A border level for heights that are known only on a grid.
     #[error(
-        "a map has no heights between the points of its grid, so a border level is impossible: resample it on a finer grid instead"
+        "a border level needs a surface of waves on a square grid; a map has no heights between its points, so resample it on a finer grid instead"
     )]
     BorderOfMap,
     /// The surface is flat, so there is nothing to adapt to.
