@@ -55,6 +55,7 @@ mod tests {
             "{text}"
         );
         assert_eq!(note(Vec::new()), None);
-        assert!(note(vec![row(1, 0.3, [1.0, 2.0])]).expect("a flow").contains("at all of its loads, or at none"));
+        let never_lost = vec![row(1, 0.3, [1.0, 2.0]), row(2, 0.3, [0.0, 0.0])];
+        assert!(note(never_lost).expect("flows").contains("On each surface and along each axis"));
     }
 }

@@ -63,7 +63,10 @@ fn poissons_ratio_of_a_layer_is_that_of_its_material() {
     let refused = place.run(&[&["solve"], &small[..], &["--e-star", "1e9"]].concat());
     assert_refused(&refused, "layer_poisson: must be given with e_star");
     let thin = ["solve", "--waves", "8", "--grid", "128", "--pressure", "1e5", "--layer-thickness", "1e-5"];
-    assert_refused(&place.run(&thin), "layer_thickness: 1e-5 m is below 0.25 of the side of an element");
+    assert_refused(
+        &place.run(&thin),
+        "layer_thickness: 1e-5 m is below 0.25 of the side of an element (7.8125e-5 m, 128 x 128 elements)",
+    );
 }
 
 #[test]
@@ -74,7 +77,8 @@ fn a_patch_has_a_result_like_any_other() {
     assert!(text(&solved.stdout).contains("mean displacement"), "{}", text(&solved.stdout));
     let found = place.json("patch/summary.json");
     let reason = found["method_reason"].as_str().expect("a reason");
-    assert!(reason.contains("would be near contact"), "bumps are as scattered as in a cell: {reason}");
+    let is_scattered = reason.starts_with("uniform: ") && reason.contains("would be near contact");
+    assert!(is_scattered, "bumps are as scattered as in a cell: {reason}");
     let [pressure, gap] = ["pressure", "gap"]
         .map(|name| rc_heights::npy::read(&place.path(&format!("patch/{name}.npy"))).expect("a field"));
     assert_close("load", pressure.mean(), 2e6, 1e-10);

@@ -52,7 +52,7 @@ fn memory_decides_whether_a_row_is_solved_but_not_how() {
 fn a_changed_digit_in_a_journal_is_found() {
     let place = Place::new();
     assert_solved(&place.run(&[&TINY[..], &["--pressures", "1e5,2e5", "--out", "s"]].concat()));
-    let journal = text(&place.bytes("s/sweep.jsonl"));
+    let (journal, whole) = (text(&place.bytes("s/sweep.jsonl")), result(&place.path("s")));
     let (from, to) = ("\"area_fraction\":0.", "\"area_fraction\":9.");
     assert!(journal.contains(from), "{journal}");
     // A damaged last line counts as torn, and its row is solved again. An earlier damaged line is named.
@@ -61,6 +61,10 @@ fn a_changed_digit_in_a_journal_is_found() {
     let resume = [&TINY[..], &["--pressures", "1e5,2e5", "--out", "s", "--resume"]].concat();
     assert_refused(&place.run(&resume), "line 2 is damaged; remove the line, and --resume");
     assert!(text(&place.bytes("s/sweep.jsonl")) == damaged, "the damaged journal was changed");
+    let without: Vec<&str> = damaged.lines().enumerate().filter(|(i, _)| *i != 1).map(|(_, line)| line).collect();
+    place.write("s/sweep.jsonl", without.join("\n") + "\n");
+    assert_solved(&place.run(&resume));
+    assert_eq!(result(&place.path("s")), whole, "the row of the removed line is solved again");
     place.write("s/sweep.jsonl", journal.replace("\"loads\":2}", "\"loads\":9999999999999999}"));
     assert_refused(&place.run(&resume), "not a journal of rc sweep");
     assert_refused(&place.run(&["sweep", "merge", "s", "--out", "m"]), "not a journal of rc sweep");
