@@ -11,7 +11,7 @@ All quantities are in SI units. A cell of 1 and an E* of 1 give dimensionless re
 
 :func:`solve` solves one problem and :func:`sweep` many. :class:`Surface` is a random surface, and :func:`surface`
 returns its heights. :func:`read` reads a measured map, :func:`prepare` treats it, and :func:`inspect` describes it.
-:func:`load` reads a result folder. Errors are ``ValueError`` with the sentence of the command line.
+:func:`load` reads a result folder. Errors are ``ValueError`` with the message that the command line prints.
 """
 
 from roughcontact._core import __version__

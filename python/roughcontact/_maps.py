@@ -184,10 +184,10 @@ def read(
     ----------
     path : path
         Text, ``.npy``, ``.h5``, ``.nc``, ``.mat``, 16-bit ``.png`` or ``.tif``, or a file of an instrument or of Gwyddion.
-    unit : {"m", "mm", "um", "nm"}, optional
+    unit : {"m", "cm", "mm", "um", "nm", "angstrom", "pm"}, optional
         Unit of the lengths of a file that names none. Default: m.
     height_scale : float, optional
-        Height (m) of 1 in a file that names no unit. In an image, 1 is one level of grey.
+        Height (m) of the value 1 in a file that names no unit. In an image, 1 is one level of grey.
     channel : str, optional
         Channel of a file with several; :func:`channels` lists them. Default: the first with heights.
     layout : {"matrix", "xyz"}, optional
@@ -240,13 +240,13 @@ def prepare(
     periodic : {"mirror", "window", "as-is"}, optional
         How opposite borders are made to meet. ``mirror`` doubles the sides.
     taper : float, optional
-        Part of each side that ``window`` fades. Default: 0.1.
+        Part of a side that ``window`` fades at each of its two ends. Default: 0.1.
     low_pass : float, optional
         Gaussian filter. Waves of this length (m) keep half of their height.
     resample : int, (int, int) or str, optional
         New numbers of points along x and y on the same area.
     repeat : str, optional
-        Copies of a periodic map side by side: ``"square"``, or ``"3x4"``.
+        Copies of a periodic map side by side: ``"3x4"``, or ``"square"`` (as many as make a square cell).
 
     Returns
     -------

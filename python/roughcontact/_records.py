@@ -19,7 +19,7 @@ class Certificate(NamedTuple):
     complementarity_error: float
     #: max(-g) / H.
     penetration_error: float
-    #: Relative deviation of the mean pressure, or of the penetration over H.
+    #: Deviation from the given load: of the mean pressure, relative to it, or of the penetration, divided by H.
     load_error: float
     #: What ``energy_error`` was to reach, or None.
     energy_tolerance: float | None

@@ -134,7 +134,7 @@ class Result:
 
     @property
     def cells(self) -> dict[str, Any]:
-        """The summary as a row of a sweep's table. Each number of a flow has its own column."""
+        """The summary as a row of a sweep's table, by column. The values of ``leakage`` have one column each."""
         cells: dict[str, Any] = json.loads(_core.cells(self._source.summary_json(), self.scene))
         return cells
 
@@ -234,9 +234,9 @@ class Result:
 
     @cached_property
     def flux(self) -> tuple[Floats, Floats] | None:
-        """Fluxes along x and y (m²), shape (ny, nx), read-only.
+        """Components along x and y of the flux (m²), shape (ny, nx), read-only.
 
-        They are for ΔP = 1 across the cell along ``leakage.flow_direction``, and 12 η = 1. None if nothing flows, or without
+        They belong to one flow, that along ``leakage.flow_direction``, for ΔP = 1 across the cell and 12 η = 1. None if nothing flows, or without
         ``leakage=True``.
         """
         fields = self._source.flux()
@@ -270,13 +270,13 @@ class Result:
             return field
         if self.pressure.shape != (ny, nx):
             height, width = self.pressure.shape
-            means = f"means over blocks (output_grid), {width} x {height} of {nx} x {ny} elements"
+            means = f"{width} x {height} means over blocks (output_grid) instead of {nx} x {ny} elements"
             raise ValueError(f"{wanted}: needs the elements, and the folder has {means}; solve again without output_grid")
         return self.pressure
 
     @cached_property
     def mesh(self) -> Elements | None:
-        """Elements in contact with their pressures. None if the elements are those of the grid (uniform method)."""
+        """The elements in contact, and their pressures. None if the elements are those of the grid (uniform method)."""
         columns = self._source.elements()
         return None if columns is None else Elements(*columns)
 
@@ -299,7 +299,7 @@ class Result:
         return [ContactSpot(*spot) for spot in found]
 
     def stress_distribution(self, bins: int | Sequence[float] | Floats = 50) -> StressDistribution:
-        """The density P(σ) of the interfacial stress, resolved below the element at contact edges.
+        """The density P(σ) of the interfacial stress. Contact edges are located within elements.
 
         With a border level it is computed from the smallest elements.
 
@@ -308,7 +308,7 @@ class Result:
         bins : int or sequence of float, default 50
             Number of equal bins from 0 to the maximum pressure, or the increasing ends of the bins (Pa).
         """
-        wrong = ValueError("bins: must be a positive number, or increasing and finite ends of bins (Pa) from 0 on")
+        wrong = ValueError("bins: must be a positive number, or ends of bins (Pa) that are finite, not negative, and increasing")
         if isinstance(bins, (int, np.integer)):
             if isinstance(bins, bool) or bins < 1:
                 raise wrong
@@ -385,7 +385,7 @@ def load(folder: Path) -> Result:
     Raises
     ------
     ValueError
-        For any other folder, with the sentence of the command line.
+        For any other folder, with the message that the command line prints.
     """
     folder = os.fspath(folder)
     _core.inspect_result(folder)

@@ -99,17 +99,18 @@ def solve(
         Upper limit of the pressure (Pa), the usual first model of plastic contact. Default: no limit, an elastic contact.
     kernel : {"love", "spectral"} or callable, default "love"
         Discretisation of the half-space. A function ``f(kx, ky)`` of two arrays of wavenumbers (rad/m) returns the
-        displacement (m) of a pressure wave of 1 Pa, which is ``2 / (E* |k|)`` for a half-space. It must be positive, and even
-        in kx and in ky. On a square grid it must also stay the same when kx and ky are exchanged. It is called once, with all
-        waves of the grid except the zero wave, and with mirror images of some. Contact edges are located with E*. It must
-        agree with the function at its shortest waves: ``E* = 2 / (|k| f)``. If it does not, a warning gives the E* that does.
+        displacement (m) of a pressure wave of 1 Pa, which is ``2 / (E* |k|)`` for a half-space. The displacement must be
+        positive, and even in kx and in ky. On a square grid it must also stay the same when kx and ky are exchanged. The
+        function is called once, with all waves of the grid except the zero wave, and with mirror images of some. Contact
+        edges are located with E*, so E* must agree with the function at the shortest waves of the grid:
+        ``E* = 2 / (|k| f)``. Otherwise a warning gives the value that agrees.
     boundary : {"periodic", "free"}, default "periodic"
         What is beyond the heights: the same heights again, or the free surface of the half-space. With "free" the heights are
         a patch with the sides ``cell`` and ``cell_y``. Then ``pressure`` is the load divided by its area, and the penetration
         is the displacement of a rigid body since first touch. Only the kernel love has free borders.
     layer_thickness, layer_poisson : float, optional
-        An elastic layer of this thickness (m), bonded to a rigid base, instead of the half-space. Its Poisson's ratio is
-        ``poisson``. With ``e_star``, ``layer_poisson`` must be given. Only the uniform method solves layers.
+        An elastic layer of this thickness (m), bonded to a rigid base, instead of the half-space. ``layer_poisson``
+        is Poisson's ratio of the layer. Default: ``poisson``. With ``e_star`` it must be given. Only the uniform method solves layers.
     method : {"adaptive", "uniform", "gauss-seidel"}, optional
         How the problem is solved. Default: adaptive, or uniform where that is cheaper.
     border_level : int, default 0
@@ -143,7 +144,7 @@ def solve(
     Raises
     ------
     ValueError
-        For input that cannot be used, with the sentence of the command line.
+        For input that cannot be used, with the message that the command line prints.
     NotConvergedError
         With ``check=True``.
     KeyboardInterrupt

@@ -75,7 +75,7 @@ class Stored:
         raise ValueError("displacement: a result that was read or unpickled does not have it; solve again")
 
     def finest_gap(self) -> Floats | None:
-        raise ValueError("spots: a result folder has no gap on the smallest elements (border_level); take them from the result of solve itself")
+        raise ValueError("spots: a result folder has no gap on the smallest elements (border_level); use spots of the result that solve returned")
 
     def elements(self) -> list[Floats] | None:
         text = self.files.get("elements.csv")

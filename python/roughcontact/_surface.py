@@ -44,9 +44,9 @@ class Surface:
         A file of Fourier coefficients, instead of a random surface. It has a line of kx, ky, Re and Im for each wave, and
         needs ``cell``.
     unit, height_scale : optional
-        Unit of the coefficients, m by default, or the height (m) of 1 in them.
+        Unit of the coefficients, m by default, or the height (m) of the value 1 in them.
     waves : int, default 64
-        Waves per cell of the shortest wave.
+        N: the shortest wavelength is 1/N of the cell side.
     hurst : float, default 0.8
         Hurst exponent, above 0 and at most 1.
     rms, rms_slope, c0 : float, optional

@@ -188,7 +188,7 @@ def _seeds(seeds: Seeds | None, heights: Any) -> list[int] | None:
     try:
         numbers = [operator.index(seed) for seed in seeds]
     except TypeError:
-        raise ValueError(f"seeds: must be whole numbers, as range(1, 8), or text, as '1..7', not {seeds!r}") from None
+        raise ValueError(f"seeds: must be whole numbers such as range(1, 8), or text such as '1..7', not {seeds!r}") from None
     if not numbers:
         raise ValueError("seeds: none is given")
     for seed in numbers:
@@ -212,7 +212,7 @@ def _places(out: Path | None, fields: Path | bool, resume: bool, kernel: Any) ->
     in_out = fields is True
     groups = None if isinstance(fields, bool) else os.path.abspath(os.fspath(fields))
     if out is None and (resume or in_out):
-        raise ValueError(f"{'resume' if resume else 'fields'}: the rows are kept in a folder; give out")
+        raise ValueError(f"{'resume' if resume else 'fields'}: the rows are kept in a folder; give out=FOLDER")
     if out is not None and callable(kernel):
         raise ValueError("out: a journal cannot tell one function for a kernel from another; omit out")
     return _Places(None if out is None else os.path.abspath(os.fspath(out)), bool(resume), in_out, groups)
@@ -288,7 +288,7 @@ class _Collected:
         self._fields: dict[int, FieldsAt | None] | None = {} if names_fields else None
         kept = [(index, json.loads(cells)) for index, cells in planned.kept()]
         self._rows = {index: {key: cell for key, cell in row.items() if key != "seed" or cell is not None} for index, row in kept}
-        self._failures = {index: "not known, it was solved in an earlier run" for index, row in kept if row["status"] == "not_converged"}
+        self._failures: dict[int, str | None] = {index: None for index, row in kept if row["status"] == "not_converged"}
         self._refused: dict[int, ValueError] = {}
 
     def __len__(self) -> int:
@@ -332,6 +332,7 @@ class _Collected:
             raise error
         if self._failures:
             first = self._failures[min(self._failures)]
-            message = f"{len(self._failures)} of {len(table)} rows did not converge, the first for this reason: {first}"
+            reason = "was solved in an earlier run, and its reason was not stored" if first is None else f"for this reason: {first}"
+            message = f"{len(self._failures)} of {len(table)} rows did not converge; the first {reason}"
             warnings.warn(message, NotConvergedWarning, stacklevel=3)
         return table

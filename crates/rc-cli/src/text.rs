@@ -72,7 +72,7 @@ pub(crate) fn plastic(s: &Summary) -> Option<String> {
 /// `None` on a layer, whose stiffness does not give the conductance.
 fn conductance(s: &Summary) -> Option<String> {
     match (s.contact_conductance, s.contact_stiffness) {
-        (Some(value), _) => Some(format!("{} 1/m per conductivity", digits(value, 4))),
+        (Some(value), _) => Some(format!("{} 1/m times the conductivity", digits(value, 4))),
         (None, Some(_)) => None,
         (None, None) => Some("infinite".into()),
     }
@@ -116,7 +116,7 @@ fn surface_line(s: &Summary) -> String {
 fn certificate_line(s: &Summary) -> String {
     let energy = s.energy_error.map_or_else(String::new, |energy| format!("energy {energy:.1e}, "));
     format!(
-        "{energy}complementarity {:.1e}, deepest overlap {:.1e}, load {:.1e}",
+        "{energy}complementarity {:.1e} and deepest overlap {:.1e} of the height range, load {:.1e}",
         s.complementarity_error, s.penetration_error, s.load_error
     )
 }

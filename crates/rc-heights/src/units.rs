@@ -122,7 +122,7 @@ pub enum LengthUnitError {
     )]
     NotLength,
     /// A scale is zero or not finite.
-    #[error("height_scale: must be finite and not 0 (m), not {value}")]
+    #[error("height_scale: must be finite (m) and different from 0, not {value}")]
     Scale {
         /// The scale as given.
         value: f64,

@@ -40,7 +40,7 @@ pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), Proble
         for (kx, ky) in [(0, 0), (grid.nx() - 1, 0), (0, grid.ny() - 1), (grid.nx() - 1, grid.ny() - 1)] {
             let value = response(kx, ky);
             if !(value > 0.0 && value <= response(0, 0)) {
-                let wanted = "positive, and at most that at (0, 0): with free borders, it is the displacement this many elements away";
+                let wanted = "positive, and at most that at (0, 0); with free borders, (kx, ky) is a distance in elements, and the value is the displacement there";
                 return fault(kx, ky, value, wanted);
             }
         }

@@ -26,7 +26,9 @@ pub enum JobError {
         found: String,
     },
     /// The numbers of an array have gaps, or contradict the size of the array.
-    #[error("the numbers of the tasks have gaps, or are not as many as the tasks ({found})")]
+    #[error(
+        "the indices of the tasks are not evenly spaced, or their range does not match the number of tasks ({found})"
+    )]
     Uneven {
         /// The variables with their values.
         found: String,
@@ -304,7 +306,7 @@ mod tests {
             (None, "SLURM_ARRAY_TASK_ID=3".to_owned(), "SLURM_ARRAY_TASK_ID=3 does not say how many tasks there are"),
             (None, "PMIX_RANK=3".to_owned(), "PMIX_RANK=3 does not say how many tasks there are"),
             (None, slurm(4, 1, 9, 3, 1), uneven),
-            (None, slurm(9, 1, 8, 8, 1), "the numbers of the tasks have gaps"),
+            (None, slurm(9, 1, 8, 8, 1), "the indices of the tasks are not evenly spaced"),
             (None, "SLURM_ARRAY_TASK_ID=x".to_owned(), "SLURM_ARRAY_TASK_ID is 'x', not a number"),
             (None, "SLURM_PROCID=0 SLURM_NTASKS=4".to_owned(), "SLURM_NTASKS=4, but srun did not start this process"),
             (Some(8), "PBS_ARRAY_INDEX=0".to_owned(), "PBS_ARRAY_INDEX=0 is outside 1 to 8"),

@@ -26,10 +26,10 @@ pub(crate) struct ExportArgs {
 }
 
 const EXPORT_HELP: &str = "\
---vtk writes fields.vti: pressure (Pa), gap (m), contact (0 or 1), of a height map height (m), and of a solve with \
---leakage flow_x and flow_y (m²), as values of the cells of an \
-image; and elements.vtu, if the result has elements.csv: the elements of the adaptive mesh as quadrilaterals, with pressure (Pa) and \
-size (m). Lengths in m. In ParaView: open, Apply, colour by pressure; fields above the plane: Cell Data to Point Data, Warp By Scalar.
+--vtk writes fields.vti: pressure (Pa), gap (m) and contact (0 or 1). A height map adds height (m), and --leakage adds flow_x and \
+flow_y (m²). All are values of the cells of an image. If the result has elements.csv, --vtk also writes elements.vtu: the elements of \
+the adaptive mesh as quadrilaterals, with pressure (Pa) and size (m). Lengths are in m. In ParaView, open a file, choose Apply, and \
+colour by pressure. For a relief of a field, apply the filters Cell Data to Point Data and Warp By Scalar.
 
 --zarr writes the folder fields.zarr, a Zarr group (version 2): the same fields, and the coordinates x and y (m) of the centres of \
 elements, in compressed chunks of at most 1024 x 1024 values, with units as attributes. In Python: xarray.open_zarr(\"result/fields.zarr\").";

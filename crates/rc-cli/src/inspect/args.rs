@@ -29,7 +29,7 @@ pub(crate) struct InspectArgs {
     /// Side of the cell along y (m) [default: that in the file, or --cell]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) cell_y: Option<f64>,
-    /// Unit of lengths in a file that names none: m, mm, um or nm [default: m]
+    /// Unit of lengths in a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]
     #[arg(long, value_name = "UNIT")]
     pub(crate) unit: Option<LengthUnit>,
     /// Height (m) of the value 1 in a file without a unit; overrides --unit

@@ -212,8 +212,8 @@ fn draw(args: &InspectArgs, heights: &Field, record: &SurfaceRecord) -> Result<(
 const ELEMENTS_PER_WAVE: usize = 4;
 
 /// Note for a map whose cell may be meant in two ways.
-const TAKEN: &str = "a map without a size is taken for a square, as rc solve takes it, so its points here are rectangles; --cell-y says \
-                     how long its other side is\n\n";
+const TAKEN: &str = "this map has no size, so it is taken as a square, as in rc solve; its point spacings along x and y then differ; if \
+                     they are equal, give --cell-y, the side along y\n\n";
 
 fn finite(path: &Path, field: Field) -> Result<Field, CliError> {
     heights::check_finite(path, &field)?;

@@ -72,12 +72,13 @@ fn treatments(rows: &[TreatmentRow]) -> String {
     if rows.is_empty() {
         return String::new();
     }
-    let heading = "  treatment           points         missing   rms height   rms slope   border step\n".to_owned();
+    let heading =
+        "  treatment           points         missing   rms height   rms slope (Sdq)   border step\n".to_owned();
     let text = rows.iter().fold(heading, |text, row| {
         let points = format!("{} x {}", row.grid[0], row.grid[1]);
         let (height, slope) = (engineering(row.rms_height, "m"), digits(row.rms_slope, 3));
         let step = row.border_step.map_or_else(|| "-".to_owned(), |ratio| digits(ratio, 3));
-        text + &format!("  {:<20}{points:<15}{:<10}{height:<13}{slope:<12}{step}\n", row.treatment, row.missing)
+        text + &format!("  {:<20}{points:<15}{:<10}{height:<13}{slope:<18}{step}\n", row.treatment, row.missing)
     });
     text + "\n"
 }
@@ -131,7 +132,7 @@ pub(crate) fn pressure(statistics: &PressureStatistics) -> String {
         ("mean in contact", engineering(s.mean_contact_pressure, "Pa")),
         ("rms, max pressure", format!("{}, {}", engineering(s.rms_pressure, "Pa"), engineering(s.max_pressure, "Pa"))),
     ];
-    aligned(&lines) + "\n  pressure in contact density\n" + &bars(&s.distribution, "Pa")
+    aligned(&lines) + "\n  contact pressure    density\n" + &bars(&s.distribution, "Pa")
 }
 
 /// About a dozen rows of the spectrum, at equal ratios of the wavenumber.

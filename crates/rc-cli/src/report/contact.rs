@@ -212,7 +212,7 @@ fn maps(result: &ResultFolder) -> Maps {
         pixel
     } else {
         format!(
-            "The files have means over blocks (output_grid): {grid} values of {nx} x {ny} elements. A block is touched if any of its \
+            "The files have {grid} means over blocks (output_grid) instead of values on {nx} x {ny} elements. A block is touched if any of its \
              elements is in contact. Stress distribution and contact spots need the elements, and are not shown. The numbers \
              on this page are from before averaging. {pixel}"
         )
@@ -248,7 +248,7 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
     let over = if least > 0.0 {
         "The density is over the whole nominal area. Every element is in contact, and the first bin begins at the minimum pressure."
     } else {
-        "The density is over the whole nominal area. Contact edges are resolved below the element, so it begins at zero."
+        "The density is over the whole nominal area. Contact edges are located within elements, so the density begins at zero."
     };
     let notes = vec![
         over.to_owned(),

@@ -84,7 +84,7 @@ pub(super) fn page(folder: &Path, settings: Option<&Value>) -> Result<Page<Curve
     let text = settings.and_then(|settings| serde_json::to_string_pretty(settings).ok());
     let files = text.map(|text| Text { title: "Settings of the sweep", text }).into_iter().collect();
     Ok(Page {
-        title: format!("Sweep of {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
+        title: format!("Sweep: {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
         subtitle: format!("{} rows: {surfaces} surfaces, given {}", rows.len(), rows[0].control),
         status,
         good,

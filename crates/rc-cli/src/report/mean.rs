@@ -86,7 +86,7 @@ pub(super) fn page(folder: &Path, settings: &Value) -> Result<Page<Body>, CliErr
     let status = if open == 0 { "converged".to_owned() } else { format!("{open} not converged") };
     let files = serde_json::to_string_pretty(settings).ok();
     Ok(Page {
-        title: format!("Mean of {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
+        title: format!("Mean: {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
         subtitle: format!("Mean of {} over realisations, given {}", first.mean_of, first.control),
         status,
         good: open == 0,
@@ -186,7 +186,7 @@ impl Level {
     fn row(&self, unit: &'static str, total: f64) -> [String; 6] {
         let seeds = format!("{} – {}", self.first_seed, self.first_seed + (self.realisations as u64).saturating_sub(1));
         [
-            self.coarser_grid.map_or_else(|| self.grid.to_string(), |coarser| format!("{} − {coarser}", self.grid)),
+            self.coarser_grid.map_or_else(|| self.grid.to_string(), |coarser| format!("{} minus {coarser}", self.grid)),
             format!("{} (seeds {seeds})", self.realisations),
             in_unit(self.mean, unit),
             in_unit(self.variance.sqrt(), unit),

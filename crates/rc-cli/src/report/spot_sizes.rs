@@ -93,7 +93,7 @@ fn rows(spots: &[ContactSpot], diameter: impl Fn(&ContactSpot) -> f64) -> Vec<(&
     let parts = (percent(largest.area_fraction / area), percent(largest.mean_pressure / load));
     vec![
         ("spots", spots.len().to_string()),
-        ("of them single elements", spots.iter().filter(|spot| spot.elements == 1).count().to_string()),
+        ("spots of one element", spots.iter().filter(|spot| spot.elements == 1).count().to_string()),
         ("mean area", format!("{} of the cell", percent(area / spots.len() as f64))),
         ("largest", format!("{}, {} of the contact, {} of the load", across(&largest), parts.0, parts.1)),
         ("median", across(&spots[spots.len() / 2])),

@@ -42,7 +42,7 @@ pub struct SurfaceKeys {
     #[arg(long, value_name = "FILE", help_heading = help::FILES)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spectrum: Option<PathBuf>,
-    /// Unit of lengths in a file that names none: m, mm, um or nm [default: m]
+    /// Unit of lengths in a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]
     #[arg(long, value_name = "UNIT", help_heading = help::FILES)]
     pub unit: Option<LengthUnit>,
     /// Height (m) of the value 1 in a file without a unit; overrides --unit
@@ -58,7 +58,7 @@ pub struct SurfaceKeys {
     /// Layout of an ambiguous text: each line a row (matrix) or point (xyz)
     #[arg(long, value_name = "matrix|xyz", help_heading = help::FILES)]
     pub layout: Option<Layout>,
-    /// N of a random surface: waves per cell of the shortest wave [default: 64]
+    /// N of a random surface: shortest wavelength = cell side / N [default: 64]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub waves: Option<usize>,
     /// Hurst exponent H [default: 0.8]
@@ -91,7 +91,8 @@ pub struct SurfaceKeys {
     pub amplitudes: Option<Amplitudes>,
     /// Elements per side, 512 or 512x256 [default: the map's; 32 per shortest wave]
     ///
-    /// 512x256 is along x and y. The adaptive method has larger elements, too; these are its finest.
+    /// 512x256 is 512 along x and 256 along y. In the adaptive method this is the grid of the smallest elements
+    /// (without --border-level), and other elements are larger.
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub grid: Option<GridSpec>,
 }

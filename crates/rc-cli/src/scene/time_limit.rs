@@ -23,8 +23,9 @@ impl FromStr for TimeLimit {
     fn from_str(text: &str) -> Result<Self, String> {
         let seconds = text.trim().parse().ok().and_then(|seconds: f64| Duration::try_from_secs_f64(seconds).ok());
         let time = seconds.or_else(|| humantime::parse_duration(text).ok()).filter(|time| !time.is_zero());
-        time.map(Self)
-            .ok_or_else(|| format!("a time is a number of seconds above 0, or as 90s, 5min, 1h 30m, not '{text}'"))
+        time.map(Self).ok_or_else(|| {
+            format!("a time is a number of seconds above 0, or has units, such as 90s, 5min or 1h 30m, not '{text}'")
+        })
     }
 }
 

@@ -31,7 +31,9 @@ impl WaveFile {
     pub(super) fn read(path: &Path, scales: Scales, side: f64) -> Result<Self, CliError> {
         let one = scales.height_scale.unwrap_or_else(|| scales.unit.map_or(1.0, LengthUnit::metres));
         if !(one.is_finite() && one != 0.0) {
-            return Err(CliError::input(format_args!("height_scale: must be finite and not 0 (m), not {one}")));
+            return Err(CliError::input(format_args!(
+                "height_scale: must be finite (m) and different from 0, not {one}"
+            )));
         }
         let coefficients = spectrum::read(path)?;
         let wave = |&Coefficient { kx, ky, re, im }: &Coefficient| Wave { kx, ky, amplitude: Complex64::new(re, im) };

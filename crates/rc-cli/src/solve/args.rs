@@ -38,16 +38,16 @@ const SOLVE_MANUAL: &str = "\
 The embedded example gives what neither scene file nor flags say: cell 0.01 m, E = 0.4 GPa, ν = 0.45, N = 64, H = 0.8, \
 rms 13 µm, seed 1, kernel love, energy tolerance 0.01. A height map never gets its cell or material: with --heights, give \
 --e-star, or --young and --poisson. If the file has no size, give --cell too. The control is never assumed: give --pressure or \
---penetration, exactly one. A flag replaces its alternatives in the scene file: --penetration its pressure, --heights its \
-random surface. Relative paths in a scene file start at its folder.
+--penetration, exactly one. A flag also replaces its alternatives: --penetration replaces the pressure of the scene file, and \
+--heights its random surface. Relative paths in a scene file start at its folder.
 
 DIR (--out) receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene.toml, from which the result can be \
-repeated. The methods adaptive and gauss-seidel have elements of their own: they write elements.csv (m, m, m, Pa). Heights \
-from a file are written as heights.npy. In the summary, iterations and operator_applications are those of the finest level.
+repeated. The methods adaptive and gauss-seidel have elements of their own: they write elements.csv with \
+the columns x, y, size (m) and pressure (Pa). Heights from a file are written as heights.npy. In the summary, iterations and operator_applications are those of the finest level.
 
 --leakage adds to the summary the flow of a thin film through the gap, Q = permeance ΔP/(12 viscosity), along x and along y. \
-DIR receives leakage.png, and of the axis flow_direction flow_x.npy and flow_y.npy: the flux in m² for ΔP = 1 across the cell \
-and 12 viscosity = 1.
+DIR receives leakage.png, flow_x.npy and flow_y.npy. The two arrays are the components of the flux (m²) of one flow, that along \
+the axis flow_direction, for ΔP = 1 across the cell and 12 viscosity = 1.
 
 --watch shows the contact as it emerges, from coarse grids to fine ones. Open DIR/watch.png in a viewer that reloads. The \
 picture looks like contact.png and is replaced as a whole. It is removed when the result is there. The result does not depend \

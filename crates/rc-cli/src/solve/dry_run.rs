@@ -61,7 +61,8 @@ impl Expected {
     fn lines(&self) -> String {
         let or_unknown = |text: Option<String>| text.unwrap_or_else(|| "not known before the solve".to_owned());
         let seconds = |value: f64| format!("{} s with {} threads of an idle machine", digits(value, 2), self.threads);
-        let elements = |value: f64| format!("{} of {} x {}", digits(value.round(), 3), self.grid[0], self.grid[1]);
+        let elements =
+            |value: f64| format!("{} of {} x {} to evaluate", digits(value.round(), 3), self.grid[0], self.grid[1]);
         text::aligned(&[
             ("method", self.method.clone()),
             ("elements", or_unknown(self.elements.map(elements))),

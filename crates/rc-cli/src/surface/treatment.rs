@@ -13,19 +13,20 @@ use crate::scene::values::GridSpec;
 pub(crate) struct TreatmentKeys {
     /// Keep a part: square (the largest in the middle), 512, 512x256, or 512x256+100+50
     ///
-    /// Numbers are points along x and y, and the first point along x and y. Points of a map without a size are squares.
+    /// 512x256+100+50 keeps 512 x 256 points, from point 100 along x and point 50 along y. All treatments take
+    /// equal spacings along x and y for a map without a size.
     #[arg(long, value_name = "PART")]
     pub(crate) crop: Option<Crop>,
     /// Mirror along axes: x, y, z (peaks become valleys, for replicas), or x,z
     #[arg(long, value_name = "AXES", value_delimiter = ',')]
     pub(crate) flip: Vec<Flip>,
-    /// Fill missing points: laplace (a membrane through those around), nearest, or lowest
+    /// Fill missing points: laplace (a membrane through measured points), nearest, or lowest
     #[arg(long, value_name = "HOW")]
     pub(crate) fill: Option<Fill>,
     /// Subtract a form, fitted by least squares: mean, plane or quadratic
     #[arg(long, value_name = "FORM")]
     pub(crate) level: Option<Level>,
-    /// Make opposite borders meet: mirror (twice the side), window, or as-is (they meet)
+    /// Make opposite borders meet: mirror (twice the side), window, or as-is (they meet already)
     ///
     /// mirror has four times the points on twice the side; slopes change sign at the seams. With window, heights fade
     /// to their mean towards the borders.
@@ -44,7 +45,7 @@ pub(crate) struct TreatmentKeys {
     pub(crate) resample: Option<GridSpec>,
     /// Copies of a periodic map side by side: 3x4, or square (makes the cell a square)
     ///
-    /// The adaptive method needs a square.
+    /// It is for other programs that need a square cell. rc itself does not need one.
     #[arg(long, value_name = "COPIES")]
     pub(crate) repeat: Option<Repeat>,
 }

@@ -41,8 +41,8 @@ pub(crate) struct SweepArgs {
     pub(crate) resume: bool,
     /// Solve part i of n; auto: the part of this task of a job array
     ///
-    /// rc sweep merge puts the parts together. auto is the part that the task of a job array (Slurm, PBS) or the MPI
-    /// rank says, in a folder of its own in --out. auto/N is for where only the task is known.
+    /// rc sweep merge puts the parts together. auto takes i and n from the job array (Slurm, PBS) or from MPI, and
+    /// writes to a folder of its own in --out. auto/N is for environments that do not say how many tasks there are.
     #[arg(long, value_name = "I/N", help_heading = "Sweep", allow_hyphen_values = true)]
     pub(crate) shard: Option<ShardSpec>,
     /// Print the commands of N parts, one a line, and solve nothing
@@ -110,7 +110,7 @@ Manual pages with longer texts: rc man --out man";
 const SWEEP_MANUAL: &str = "\
 DIR (--out) receives sweep.csv: a line for each solve, by scene, seed, load. Its columns are scene (where there are several), seed, \
 control_value (Pa or m), and the keys of the summary of rc solve. --leakage adds permeance_x, permeance_y (m³) and percolates \
-(along x, along y). threads is the number of the whole sweep, and peak_memory_bytes that of its process. Finished rows are kept \
+(along x, along y). threads is the number of threads of the whole sweep, and peak_memory_bytes the peak memory of its process. Finished rows are kept \
 in sweep.jsonl at once: whatever ends the sweep, --resume continues after them.
 
 --threads is the number of all threads. As many rows as fit into memory (--memory-limit, or half of the machine's) are \
@@ -120,10 +120,10 @@ Parts of a sweep are of about equal work, by the estimate of rc solve --dry-run.
 --resume --out DIR is the command of every task. A task that is run again continues after its finished rows. Each task has a \
 folder DIR/part-i-of-n, and rc sweep merge DIR/part-* --out ALL makes the sweep of them.
 
---error-of-mean chooses realisations and grids by multilevel Monte Carlo: many realisations on a coarse grid, and few \
-differences to finer ones. DIR receives mean.json: mean, standard error and error of the grid for each load, and grids, \
+--error-of-mean chooses realisations and grids by multilevel Monte Carlo: many realisations on a coarse grid, and \
+only a few for the difference from each grid to the next finer one. DIR receives mean.json: mean, standard error and error of the grid for each load, and grids, \
 realisations, variance and cost of each level. sweep.csv has the solves. Only results decide what is solved next, so the sweep \
 can be interrupted, and resumed also with a smaller error.
 
 Without lists, a scene is solved for its own load and seed. Rows that did not converge are marked, and the exit code is 3 at \
-the end. A row whose input is refused ends the sweep.";
+the end. A row whose load is refused is left out. The others are solved, and the exit code is 2 at the end.";

@@ -107,7 +107,7 @@ fn plan(surface: &SweptSurface, control: ControlKind) -> Result<EnsemblePlan, Cl
     sides.reverse();
     if sides.len() < 2 {
         return Err(CliError::input(format_args!(
-            "grid: the mean needs a grid that can be halved to at least {coarsest} elements per side, as {}, not {grid}",
+            "grid: the mean needs an even number of at least {} elements per side, not {grid}",
             2 * coarsest
         )));
     }
@@ -140,18 +140,18 @@ fn lines(mean: &EnsembleMean) -> String {
     let names = ["grid", "realisations", "mean", "std deviation", "cost of each"].map(str::to_owned);
     let levels: String = [names].into_iter().chain(mean.levels.iter().map(cells)).map(columns).collect();
     let part = digits(mean.cost / mean.cost_of_plain_mean, 2);
-    format!("{head}{levels}  {part} of the estimated cost of the finest grid alone\n")
+    format!("{head}{levels}  cost: {part} times the estimated cost with the finest grid alone\n")
 }
 
 /// The cells of a line about a level.
 fn cells(level: &EnsembleLevel) -> [String; 5] {
     let found = &level.found;
     let grid =
-        level.coarser_grid.map_or_else(|| level.grid.to_string(), |coarser| format!("{} - {coarser}", level.grid));
+        level.coarser_grid.map_or_else(|| level.grid.to_string(), |coarser| format!("{} minus {coarser}", level.grid));
     let [mean, deviation, cost] = [found.mean, found.variance.sqrt(), found.cost].map(|value| digits(value, 4));
     [grid, found.realisations.to_string(), mean, deviation, cost]
 }
 
 fn columns([grid, realisations, mean, deviation, cost]: [String; 5]) -> String {
-    format!("  {grid:<12}{realisations:>13}{mean:>16}{deviation:>16}{cost:>14}\n")
+    format!("  {grid:<16}{realisations:>13}{mean:>16}{deviation:>16}{cost:>14}\n")
 }

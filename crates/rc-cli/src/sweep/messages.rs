@@ -22,8 +22,8 @@ impl From<SweepError> for CliError {
 fn not_kept(cause: &str, kept: usize) -> String {
     match kept {
         0 => cause.to_owned(),
-        1 => format!("{cause}; the row before is kept, and --resume goes on with it"),
-        _ => format!("{cause}; the {kept} rows before are kept, and --resume goes on with them"),
+        1 => format!("{cause}; the row before is kept, and --resume continues after it"),
+        _ => format!("{cause}; the {kept} rows before are kept, and --resume continues after them"),
     }
 }
 

@@ -76,9 +76,8 @@ impl FromStr for ListSpec {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let refuse = |_| {
-            format!("give a number of parts from 1 on, as 64, or the word rows for a part for each row, not '{text}'")
-        };
+        let refuse =
+            |_| format!("give a number of parts, such as 64, or the word 'rows' (one part per row), not '{text}'");
         if text == Self::ROWS { Ok(Self::EachRow) } else { text.parse().map(Self::Parts).map_err(refuse) }
     }
 }

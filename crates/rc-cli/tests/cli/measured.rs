@@ -150,7 +150,11 @@ fn points_of_a_map_without_a_size_are_squares_when_it_is_treated() {
     assert_solved(&place.run(&[&treat[..], &["--quiet"]].concat()));
     let output = place.run(&["inspect", "map.npy", "--cell", "3e-3"]);
     assert_solved(&output);
-    assert!(text(&output.stdout).starts_with("a map without a size is taken for a square"), "{}", text(&output.stdout));
+    assert!(
+        text(&output.stdout).starts_with("this map has no size, so it is taken as a square"),
+        "{}",
+        text(&output.stdout)
+    );
 }
 
 #[test]

@@ -131,7 +131,7 @@ fn means_over_blocks_are_not_taken_for_elements() {
     let page = self_contained(&place, "r/report.html");
     assert_eq!(page["maps"]["of_elements"], false);
     let says = page["maps"]["averaged"].as_str().expect("text");
-    assert!(says.contains("32 x 32 values of 128 x 128 elements"), "{says}");
+    assert!(says.contains("32 x 32 means over blocks (output_grid) instead of values on 128 x 128 elements"), "{says}");
     assert!(page["stress"].is_null() && page["spots"].is_null(), "what needs the elements is left out");
     assert_solved(&place.run(&["export", "r", "--quiet"]));
     let head = text(&place.bytes("r/fields.vti"));

@@ -147,7 +147,7 @@ fn files_that_are_no_surface_are_refused_with_one_line() {
         (&["--low-cut", "8"], "spectrum defines the surface"),
         (&["--cell-y", "0.02"], "cell_y: applies to height maps; a surface of waves has a square cell"),
         (&["--grid", "16"], "grid: 16 x 16 elements are too coarse for waves = 8; at least 17"),
-        (&["--height-scale", "0"], "height_scale: must be finite and not 0"),
+        (&["--height-scale", "0"], "height_scale: must be finite (m) and different from 0, not 0"),
         (&["--level", "plane"], "are for height maps"),
         (&["--unit", "V"], "'V'"),
     ];

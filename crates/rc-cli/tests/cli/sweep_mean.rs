@@ -87,7 +87,7 @@ fn each_load_has_a_mean_and_the_text_has_every_level() {
         assert!(mean.is_some_and(|mean| mean["mean_of"] == "penetration"), "{load}: {found}");
     }
     assert_eq!(printed.matches("mean penetration at pressure ").count(), 2, "{printed}");
-    assert_eq!(printed.matches("128 - 64").count(), 2, "{printed}");
+    assert_eq!(printed.matches("128 minus 64").count(), 2, "{printed}");
     assert!(printed.contains("written to m/mean.json"), "{printed}");
     assert_solved(&place.run(&["report", "m"]));
 }
@@ -102,7 +102,7 @@ fn what_does_not_go_with_a_mean_is_refused() {
         (&["--shard", "1/2"], "shard: cannot be combined with --error-of-mean"),
         (&["--list"], "list: cannot be combined with --error-of-mean"),
         (&["--fields"], "fields: cannot be combined with --error-of-mean"),
-        (&["--grid", "96"], "can be halved to at least 64 elements per side, as 128"),
+        (&["--grid", "96"], "grid: the mean needs an even number of at least 128 elements per side, not 96"),
         (&["--seed", "9223372036854775807"], "leaves no room"),
         (&["--mean-of", "seed"], "--mean-of"),
     ];

@@ -41,7 +41,8 @@ pub(super) fn channels(bytes: &[u8], layout: Option<Layout>) -> Channels<'_> {
 fn map(text: &str, heading: &Heading, layout: Option<Layout>) -> Result<HeightMap, FormatError> {
     if let ([_, _], None) = (heading.titles.as_slice(), layout) {
         let expected =
-            "but titles need three columns, x, y and height; remove them, or give the layout matrix".to_owned();
+            "but titles need three columns, x, y and height; remove the line of titles, or give the layout matrix"
+                .to_owned();
         return Err(FormatError::Columns { line: heading.first.saturating_sub(1), found: 2, expected });
     }
     let mut heights = rows(text, heading.first)?;

@@ -59,7 +59,9 @@ pub enum TreatError {
         missing: usize,
     },
     /// There are too few points for a form.
-    #[error("level: the {points} measured points do not determine a {form} form; level less, or fill first")]
+    #[error(
+        "level: the {points} measured points do not determine a {form} form; choose a form with fewer coefficients, or fill first"
+    )]
     Undetermined {
         /// The form.
         form: Level,
@@ -77,7 +79,9 @@ pub enum TreatError {
         most: f64,
     },
     /// The window leaves no part of the map unchanged.
-    #[error("taper: must be above 0 and at most 0.5, the part of each side that is faded out at each end, not {0}")]
+    #[error(
+        "taper: must be above 0 and at most 0.5, not {0}; it is the part of a side that fades at each of its two ends"
+    )]
     Taper(f64),
     /// The number of points is not valid for a grid.
     #[error(transparent)]

@@ -89,9 +89,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     let defaults = ContactKeys { pressure: None, penetration: None, method: None, ..file::example().contact };
     let keys = keys.over(defaults);
     if keys.area_error.is_some() {
-        return Err(CliError::input(
-            "area_error: only rc solve, on a random surface, chooses its grid; give grid instead",
-        ));
+        return Err(CliError::input("area_error: works only in rc solve, for random surfaces; give grid instead"));
     }
     let units = Units::new(cell, elasticity(&keys)?);
     let control = control(&keys, units)?;
