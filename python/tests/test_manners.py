@@ -164,7 +164,7 @@ def test_an_error_of_the_function_that_sees_progress_ends_the_solve():
     assert raised.value.result.status in ("converged", "not_converged")
 
 
-def test_what_does_not_converge_is_marked_and_warned_of_or_an_error():
+def test_what_does_not_converge_is_marked_and_warned_of_or_an_error(tmp_path):
     # Ended by the limit of time, before its first iteration.
     late = {**KEYS, "tolerance": 1e-12, "time_limit": 1e-3}
     with pytest.warns(rc.NotConvergedWarning, match="not converged to"):
@@ -176,6 +176,10 @@ def test_what_does_not_converge_is_marked_and_warned_of_or_an_error():
     with pytest.warns(rc.NotConvergedWarning, match="1 of 1 rows"):
         del late["pressure"]
         rc.sweep(pressures=[2e5], **late)
+    with pytest.warns(rc.NotConvergedWarning, match="1 of 1 rows did not converge; the first for this reason: not converged to"):
+        rc.sweep(pressures=[2e5], out=tmp_path / "late", **late)
+    with pytest.warns(rc.NotConvergedWarning, match="1 of 1 rows did not converge; the first was solved in an earlier run"):
+        rc.sweep(pressures=[2e5], out=tmp_path / "late", resume=True, **late)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert rc.solve(**KEYS).converged

@@ -100,7 +100,7 @@ def test_a_pickle_has_the_fields_and_not_their_means_over_blocks(heights, tmp_pa
     means = rc.load(tmp_path / "saved")
     assert means.pressure.mean() == pytest.approx(1e6)
     for name in ("contact", "spots"):
-        with pytest.raises(ValueError, match=f"^{name}: needs the elements, .*16 x 16 of 64 x 64"):
+        with pytest.raises(ValueError, match=rf"^{name}: needs the elements, .*16 x 16 means over blocks \(output_grid\) instead of 64 x 64"):
             getattr(means, name)
     with pytest.raises(ValueError, match="^stress_distribution: needs the elements"):
         means.stress_distribution()
