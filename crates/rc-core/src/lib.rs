@@ -61,8 +61,8 @@
 //!
 //! The paper is Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method for contact mechanics of
 //! rough surfaces*, Int. J. Solids Struct. 49 (2012) 338-343. A mention such as "Eq. 4" without another source means
-//! equation 4 of this paper. Only the function that evaluates an equation puts the equation's number in parentheses.
-//! Search the crates for it with both parentheses to find the function.
+//! equation 4 of this paper. Only the function that evaluates an equation writes the number in parentheses. `grep -rn
+//! "Eq. (n)" crates`, with the number for n, therefore finds this function.
 
 #[cfg(feature = "ndarray")]
 mod array;

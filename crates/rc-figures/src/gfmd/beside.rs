@@ -68,7 +68,8 @@ fn energies(figure: &Gfmd, folder: &Path) -> Result<Table> {
 
 /// Table of mean gaps from histograms of the gap over the rms height.
 ///
-/// The files do not say whether a gap is the lower end of its bin or its middle, so both means are given.
+/// The files do not say whether a gap is the middle of its bin or its lower end, so both means are given. The second is
+/// half a bin larger.
 fn gaps(figure: &Gfmd, folder: &Path) -> Result<Table> {
     let mut rows = Vec::new();
     for part in ["low", "high"] {
@@ -85,7 +86,7 @@ fn gaps(figure: &Gfmd, folder: &Path) -> Result<Table> {
         }
     }
     let header =
-        ["mean_pressure_over_e_star", "published_if_ends", "published_if_middles", "mean_gap", "mean_gap_error"];
+        ["mean_pressure_over_e_star", "published_if_middles", "published_if_lower_ends", "mean_gap", "mean_gap_error"];
     Ok(Table::new("beside-gap", &header, rows))
 }
 
