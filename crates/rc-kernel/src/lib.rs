@@ -80,8 +80,9 @@ use rc_core::{Grid, Kernel, Symbol};
 /// *Accuracy*: every value is within 4e-15 relative of [`love_alias_sum`] (test `fast_symbol_matches_the_alias_sum`).
 /// The coefficients L_ij are accurate to 1e-12 (test `love_symbol_reproduces_the_periodic_coefficients`).
 ///
-/// *Cost*: the first [`Kernel::symbol`] for a shape of elements takes 2 ms. Later ones take 0.3 µs for each element
-/// of a side, because the process keeps the fit. A value takes 25 ns on square elements, and up to 70 ns on others.
+/// *Cost*: the first [`Kernel::symbol`] for a shape of elements takes 2 ms, to fit the smooth part of the alias sum.
+/// The process keeps this fit, and later ones take 0.3 µs for each element of a side. A value takes 25 ns on square
+/// elements, and up to 70 ns on others.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Love;
 
