@@ -78,7 +78,7 @@ class Result:
     max_pressure: float
     #: Mean gap (m).
     mean_gap: float
-    #: Estimated error of ``mean_gap`` and ``penetration`` (m).
+    #: Estimated error of ``mean_gap`` (m). In a periodic cell under a given load, ``penetration`` has the same error.
     mean_gap_error: float
     #: dσ0/dΔ (Pa/m); None in full contact.
     contact_stiffness: float | None

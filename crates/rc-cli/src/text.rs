@@ -52,7 +52,9 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
         lines.extend(leakage_lines(leakage));
     }
     if let (Some(evaluated), Some(proven)) = (s.cells_evaluated, s.cells_proven) {
-        lines.push(("elements", format!("{evaluated} evaluated, {proven} proven out of contact")));
+        // With border levels, these are not the elements of the grid.
+        let name = if evaluated + proven > nx * ny { "smallest elements" } else { "elements" };
+        lines.push((name, format!("{evaluated} evaluated, {proven} proven out of contact")));
     }
     lines
 }

@@ -160,7 +160,7 @@ pub enum FormatError {
     Irregular(String),
     /// A height is infinite.
     #[error(
-        "row {row}, column {column} (from 0) is {value}; heights must be finite, and NaN where nothing was measured"
+        "row {row}, column {column} (from 0) is {value}; heights must be finite, or NaN where nothing was measured"
     )]
     Infinite {
         /// Row, from 0.

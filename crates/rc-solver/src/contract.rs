@@ -64,7 +64,7 @@ pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), Proble
         // On other grids the mirrored wave may not be a wave of the grid.
         let is_mirrored = || (symbol(ky, kx) - value).abs() <= MIRROR_ERROR * value;
         if grid.is_square() && kx.max(ky) > 0 && !is_mirrored() {
-            return fault(ky, kx, symbol(ky, kx), "that of kx and ky exchanged, since the grid is square");
+            return fault(ky, kx, symbol(ky, kx), "the same at (ky, kx), since the grid is square");
         }
     }
     Ok(())

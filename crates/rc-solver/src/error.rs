@@ -128,7 +128,9 @@ pub enum ProblemError {
 #[non_exhaustive]
 pub enum OperatorFault {
     /// A displacement is NaN or infinite, or the operator does not overwrite its output.
-    #[error("the displacement of element {element} is {value}; it must be finite, whatever the output held before")]
+    #[error(
+        "the displacement of element {element} is {value}; it must be finite, whatever numbers were in the output array before"
+    )]
     NotFinite {
         /// Index of the element.
         element: usize,

@@ -127,9 +127,12 @@ impl fmt::Display for MethodReason {
             Self::OwnOperator => write!(f, "uniform: the operator is the caller's"),
             Self::NoSplitOfKernel { kernel } => write!(f, "uniform: the kernel {kernel} has no adaptive form"),
             Self::Layer => write!(f, "uniform: a layer has no adaptive form"),
-            Self::ElementsNotSquare { grid } => write!(f, "uniform: {grid} elements are not square"),
+            Self::ElementsNotSquare { grid } => write!(f, "uniform: the elements of the grid {grid} are not square"),
             Self::NoLevels { grid } => {
-                write!(f, "uniform: {grid} elements are too few or have no base grid of squares")
+                write!(
+                    f,
+                    "uniform: the grid {grid} is too coarse for the adaptive method or has no base grid of square elements"
+                )
             }
             Self::Flat => write!(f, "uniform: a flat surface needs no adaptive mesh"),
             Self::ToleranceTooSmall { tolerance } => {

@@ -48,7 +48,7 @@ pub(super) fn group(fields: &Fields) -> Group<'_> {
         plane("height", "m", meaning, Values::Float64(height.values().into()))
     }));
     arrays.extend(flow.iter().map(|(name, flux)| {
-        let meaning = "flux of the film for a pressure drop of 1 Pa across the cell and a viscosity of 1/12 Pa s";
+        let meaning = "flux of the film times 12 viscosity, divided by the pressure drop across the cell";
         plane(name, "m2", meaning, Values::Float64(flux.values().into()))
     }));
     arrays.push(axis("y", &["y"], (0..grid.ny()).map(|iy| grid.centre(0, iy).y * side).collect()));

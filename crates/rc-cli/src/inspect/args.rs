@@ -16,9 +16,9 @@ pub(crate) struct InspectArgs {
     /// FILE has Fourier coefficients, as rc solve --spectrum reads them
     #[arg(long)]
     pub(crate) spectrum: bool,
-    /// Elements per side for the distribution [default: 4 per shortest wave]
+    /// With --spectrum: elements per side for the heights [default: 4 per shortest wave]
     ///
-    /// The heights of a file of waves are evaluated on them. Moments are exact.
+    /// The distribution of the heights is that on these elements. Moments are exact.
     #[arg(long, value_name = "N", requires = "spectrum", allow_hyphen_values = true)]
     pub(crate) grid: Option<GridSpec>,
     /// Side λ of the cell, along x (m) [default: the file's; 0.01 if it has none]

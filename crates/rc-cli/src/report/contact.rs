@@ -176,7 +176,7 @@ fn tiles(s: &Summary) -> Vec<Tile> {
 fn commands(folder: &Path, scene: &Scene) -> Vec<Command> {
     let path = quoted(&folder.join("scene.toml").display().to_string());
     let mut commands = vec![Command {
-        note: "With the scene file in its folder, to the last digit:".to_owned(),
+        note: "With the scene file of the result folder, to the last digit:".to_owned(),
         text: format!("rc solve {path} --out again"),
     }];
     if scene.surface.file().is_none() {
@@ -248,12 +248,12 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
     let over = if least > 0.0 {
         "The density is over the whole nominal area. Every element is in contact, and the first bin begins at the minimum pressure."
     } else {
-        "The density is over the whole nominal area. Contact edges are located within elements, so the density begins at zero."
+        "The density is over the whole nominal area. The pressure falls to zero at contact edges, which are located within elements. The density is therefore zero at zero stress."
     };
     let notes = vec![
         over.to_owned(),
         format!(
-            "The fit has one constant: Λ = {} E*², {} times the theory's g²/8 with the rms slope g. The area of the fit is \
+            "The fit has one constant: Λ = {} E*², {} times the theory's (E* h')²/8, with the rms slope h'. The area of the fit is \
              erf(σ0/2√Λ) = {} %, and the solved area is {} %.",
             digits(fit.lambda / (e_star * e_star), 4),
             digits(fit.lambda / (e_star * e_star) / theory.lambda, 3),

@@ -91,8 +91,8 @@ pub struct SurfaceKeys {
     pub amplitudes: Option<Amplitudes>,
     /// Elements per side, 512 or 512x256 [default: the map's; 32 per shortest wave]
     ///
-    /// 512x256 is 512 along x and 256 along y. In the adaptive method this is the grid of the smallest elements
-    /// (without --border-level), and other elements are larger.
+    /// 512x256 is 512 along x and 256 along y. The adaptive method has elements of this size near contacts
+    /// only, and smaller ones at edges with --border-level.
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub grid: Option<GridSpec>,
 }
@@ -202,7 +202,7 @@ pub struct RunKeys {
     #[arg(long)]
     #[serde(default)]
     pub quiet: bool,
-    /// Print the summary as JSON, also with --quiet
+    /// Print the results as JSON, also with --quiet
     #[arg(long)]
     #[serde(default)]
     pub json: bool,

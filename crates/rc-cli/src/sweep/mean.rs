@@ -140,7 +140,9 @@ fn lines(mean: &EnsembleMean) -> String {
     let names = ["grid", "realisations", "mean", "std deviation", "cost of each"].map(str::to_owned);
     let levels: String = [names].into_iter().chain(mean.levels.iter().map(cells)).map(columns).collect();
     let part = digits(mean.cost / mean.cost_of_plain_mean, 2);
-    format!("{head}{levels}  cost: {part} times the estimated cost with the finest grid alone\n")
+    format!(
+        "{head}{levels}  cost (elements times applications of the operator): {part} times the estimate with the finest grid alone\n"
+    )
 }
 
 /// The cells of a line about a level.

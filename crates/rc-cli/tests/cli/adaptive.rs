@@ -78,7 +78,7 @@ fn the_method_is_chosen_by_what_can_and_what_is_cheaper() {
         (&["4e6", "--grid", "128"], "uniform", "cheaper for the contact area of"),
         (&["1e9", "--grid", "128"], "uniform", "contact area of 100 %"),
         (&["1e5", "--grid", "128x64"], "uniform", "not square"),
-        (&["1e5", "--grid", "66"], "uniform", "too few"),
+        (&["1e5", "--grid", "66"], "uniform", "the grid 66 x 66 is too coarse for the adaptive method"),
         (&["1e5", "--grid", "130"], "adaptive", "the contact area was estimated as"),
         (&["1e5", "--grid", "128", "--tolerance", "1e-12"], "uniform", "1e-12"),
     ];

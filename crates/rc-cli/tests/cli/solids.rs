@@ -61,7 +61,7 @@ fn poissons_ratio_of_a_layer_is_that_of_its_material() {
     let by_e_star = with(&["--e-star", &e_star, "--layer-poisson", "0.3"]);
     assert_close("area", number(&by_e_star, "area_fraction"), number(&by_layer, "area_fraction"), 1e-9);
     let refused = place.run(&[&["solve"], &small[..], &["--e-star", "1e9"]].concat());
-    assert_refused(&refused, "layer_poisson: must be given with e_star");
+    assert_refused(&refused, "layer_poisson: is missing; e_star does not contain");
     let thin = ["solve", "--waves", "8", "--grid", "128", "--pressure", "1e5", "--layer-thickness", "1e-5"];
     assert_refused(
         &place.run(&thin),

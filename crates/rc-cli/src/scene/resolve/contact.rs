@@ -144,7 +144,9 @@ fn check_method(keys: &ContactKeys, kernel: KernelName) -> Result<(), CliError> 
         )));
     }
     if let (Some(Method::GaussSeidel), Some(_)) = (keys.method, keys.hardness) {
-        return Err(CliError::input("hardness: the method 'gauss-seidel' has none; adaptive and uniform do"));
+        return Err(CliError::input(
+            "hardness: the method 'gauss-seidel' does not support it; adaptive and uniform do",
+        ));
     }
     match (keys.border_level, keys.method, kernel) {
         (Some(1..), Some(Method::Uniform | Method::GaussSeidel), _)

@@ -37,7 +37,7 @@ pub(super) fn layer(keys: &ContactKeys, kernel: KernelName, side: f64) -> Result
     let Some(thickness) = keys.layer_thickness else { return Ok(None) };
     let thickness = positive("layer_thickness", "m", Some(thickness))? / side;
     let poisson = keys.layer_poisson.or(keys.poisson).ok_or_else(|| {
-        CliError::input("layer_poisson: must be given with e_star, which does not say Poisson's ratio of the layer")
+        CliError::input("layer_poisson: is missing; e_star does not contain Poisson's ratio of the layer")
     })?;
     check_ratio(poisson)?;
     if kernel == KernelName::Own {
