@@ -81,8 +81,8 @@ use rc_core::{Grid, Kernel, Symbol};
 /// The coefficients L_ij are accurate to 1e-12 (test `love_symbol_reproduces_the_periodic_coefficients`).
 ///
 /// *Cost*: the first [`Kernel::symbol`] for a shape of elements takes 2 ms, to fit the smooth part of the alias sum.
-/// The process keeps this fit, so later calls take 0.3 µs for each element of a side. A value takes 25 ns on square
-/// elements, and up to 70 ns on others.
+/// The process keeps this fit, so later calls take only 0.3 µs times the number of elements along a side. A value takes
+/// 25 ns on square elements, and up to 70 ns on others.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Love;
 
