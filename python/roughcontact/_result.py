@@ -104,9 +104,9 @@ class Result:
     tolerance: float | None
     #: See :class:`Certificate`.
     energy_tolerance: float | None
-    #: Elements whose gap the certificate computed.
+    #: Elements whose gap the certificate computed. With border levels, they have several sizes.
     cells_evaluated: int
-    #: Elements that are proven to be out of contact.
+    #: Elements of the smallest size that are proven to be out of contact.
     cells_proven: int
     #: Iterations on each level, coarsest first.
     level_iterations: list[int]

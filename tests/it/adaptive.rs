@@ -284,6 +284,10 @@ fn border_levels_refine_edges_only() {
         let load: f64 =
             edges.elements().expect("a mesh").map(|element| element.pressure * element.side * element.side).sum();
         assert_close("mean pressure of the elements", load, MEAN_PRESSURE, 1e-12);
+        // What is proven to be out of contact and what is in contact are different parts of the cell.
+        let smallest = ((256_usize << border_level) as f64).powi(2);
+        let proven = edges.n_proven() as f64 / smallest;
+        assert!(proven > 0.5 && proven < 1.0 - of_edges.area.cells, "{proven} of the cell is proven");
         counts.push((edges.n_elements() as f64, of_edges.area.cells));
         if border_level == 4 {
             let with_side =

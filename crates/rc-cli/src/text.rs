@@ -52,11 +52,18 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
         lines.extend(leakage_lines(leakage));
     }
     if let (Some(evaluated), Some(proven)) = (s.cells_evaluated, s.cells_proven) {
-        // With border levels, these are not the elements of the grid.
-        let name = if evaluated + proven > nx * ny { "smallest elements" } else { "elements" };
-        lines.push((name, format!("{evaluated} evaluated, {proven} proven out of contact")));
+        lines.push(("elements", counts(evaluated, proven, nx * ny)));
     }
     lines
+}
+
+/// Numbers of elements with and without a computed gap, on a grid of `n` elements.
+fn counts(evaluated: usize, proven: usize, n: usize) -> String {
+    if evaluated + proven == n {
+        format!("{evaluated} evaluated, {proven} proven out of contact")
+    } else {
+        format!("{evaluated} of several sizes evaluated, {proven} of the smallest size proven out of contact")
+    }
 }
 
 /// Text of the plastic part of the contact; `None` without a hardness.

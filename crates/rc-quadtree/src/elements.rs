@@ -72,6 +72,12 @@ impl Elements {
         self.levels.iter().map(TileSet::n_inside).sum()
     }
 
+    /// Number of cells of the finest size that would cover the elements.
+    #[must_use]
+    pub fn n_finest(&self) -> usize {
+        self.levels.iter().enumerate().map(|(coarser, tiles)| tiles.n_inside() << (2 * coarser)).sum()
+    }
+
     /// Whether there is a tile at a place of the level with `sides` cells.
     #[must_use]
     pub fn has(&self, sides: [usize; 2], [column, row]: [u32; 2]) -> bool {

@@ -117,11 +117,13 @@ pub struct Summary {
     pub tolerance: Option<f64>,
     /// Tolerance of `energy_error`.
     pub energy_tolerance: Option<f64>,
-    /// Number of grid elements whose gap was computed for the certificate.
-    pub cells_evaluated: Option<usize>,
-    /// Number of elements that were proven to be out of contact without their gap.
+    /// Number of elements whose gap was computed for the certificate.
     ///
-    /// These are all other elements.
+    /// With border levels, they have several sizes.
+    pub cells_evaluated: Option<usize>,
+    /// Number of elements of the smallest size that are proven to be out of contact.
+    ///
+    /// Their gap was not computed. They are the rest of the cell.
     pub cells_proven: Option<usize>,
     /// Numbers of iterations on each level, coarsest first.
     pub level_iterations: Option<Vec<usize>>,

@@ -28,6 +28,9 @@ struct Expected {
     /// Time on an idle machine (s).
     wall_seconds: Option<f64>,
     threads: usize,
+    /// Whether elements have several sizes.
+    #[serde(skip)]
+    has_border: bool,
 }
 
 /// Prints the estimate, without solving or writing anything.
@@ -55,14 +58,22 @@ impl Expected {
             memory_bytes: cost.bytes.map(|bytes| bytes + PROCESS_BYTES),
             wall_seconds: cost.cpu_seconds.map(|seconds| seconds / threads as f64),
             threads,
+            has_border: problem.contact.params.border_level > 0,
         }
     }
 
     fn lines(&self) -> String {
         let or_unknown = |text: Option<String>| text.unwrap_or_else(|| "not known before the solve".to_owned());
         let seconds = |value: f64| format!("{} s with {} threads of an idle machine", digits(value, 2), self.threads);
-        let elements =
-            |value: f64| format!("{} of {} x {} to evaluate", digits(value.round(), 3), self.grid[0], self.grid[1]);
+        let [nx, ny] = self.grid;
+        let elements = |value: f64| {
+            let count = digits(value.round(), 3);
+            if self.has_border {
+                format!("{count} of several sizes to evaluate")
+            } else {
+                format!("{count} of {nx} x {ny} to evaluate")
+            }
+        };
         text::aligned(&[
             ("method", self.method.clone()),
             ("elements", or_unknown(self.elements.map(elements))),

@@ -45,7 +45,7 @@ pub(crate) struct TreatmentKeys {
     pub(crate) resample: Option<GridSpec>,
     /// Copies of a periodic map side by side: 3x4, or square (makes the cell a square)
     ///
-    /// It is for other programs that need a square cell. rc itself does not need one.
+    /// square is for programs that need a square cell. In rc, only the method gauss-seidel needs one.
     #[arg(long, value_name = "COPIES")]
     pub(crate) repeat: Option<Repeat>,
 }

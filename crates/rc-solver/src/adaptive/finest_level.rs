@@ -277,7 +277,8 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     fn into_solved(self, evaluation: Evaluation) -> (SolvedLevel, PressureScale) {
         let Self { candidates: Candidates { elements, .. }, info, .. } = self;
         let Evaluation { pressure, gap, outcome, scale, .. } = evaluation;
-        (SolvedLevel { evaluated: elements.n_cells(), elements, pressure, gap, outcome, info }, scale)
+        let (evaluated, covered) = (elements.n_cells(), elements.n_finest());
+        (SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, info }, scale)
     }
 }
 

@@ -20,9 +20,11 @@ pub(super) struct SolvedLevel {
     pub(super) gap: Vec<f64>,
     pub(super) outcome: Outcome,
     /// Number of elements whose gap was computed.
-    ///
-    /// On the finest level, all other elements are proven to be out of contact.
     pub(super) evaluated: usize,
+    /// Number of elements of the smallest size that would cover these elements.
+    ///
+    /// On the finest level, all others are proven to be out of contact.
+    pub(super) covered: usize,
     pub(super) info: LevelInfo,
 }
 
@@ -68,5 +70,5 @@ pub(super) fn solve_coarse_level(
     let outcome = descent.run(goal, &DescentObserver { observer, mesh: &elements });
     let info = descent.info();
     let (pressure, gap) = descent.into_vectors(0.0);
-    SolvedLevel { evaluated: elements.len(), elements, pressure, gap, outcome, info }
+    SolvedLevel { evaluated: elements.len(), covered: elements.n_finest(), elements, pressure, gap, outcome, info }
 }

@@ -258,7 +258,7 @@ impl<'a> AdaptiveProblem<'a> {
     /// Makes the solution from the results of the levels.
     fn finish(&self, solved: NestedSolution) -> AdaptiveSolution {
         let NestedSolution { grid, level, levels, coarser, .. } = solved;
-        let SolvedLevel { elements, pressure, gap, outcome, evaluated, .. } = level;
+        let SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, .. } = level;
         let (contact_gap, hardness) = (outcome.contact_gap, self.problem.hardness);
         let values = Values { mesh: &elements, pressure: &pressure, gap: &gap, contact_gap, hardness };
         let (area, plastic) = (values.contact_area(grid), values.plastic_edges(grid));
@@ -278,7 +278,7 @@ impl<'a> AdaptiveProblem<'a> {
             plastic,
             info,
             evaluated,
-            proven: grid.len() - evaluated,
+            proven: grid.len() - covered,
         }
     }
 

@@ -42,11 +42,11 @@ pub(crate) struct AdaptiveSolution {
     ///
     /// The certificate holds for the whole cell.
     pub info: SolveInfo,
-    /// Number of cells of the finest grid whose gap the certificate computed.
+    /// Number of elements whose gap the certificate computed. With border levels, they have several sizes.
     pub evaluated: usize,
-    /// Number of cells that were proven to be out of contact.
+    /// Number of elements of the smallest size that were proven to be out of contact.
     ///
-    /// Their gap was not computed. These are all other cells.
+    /// Their gap was not computed. They are the rest of the cell.
     pub proven: usize,
 }
 

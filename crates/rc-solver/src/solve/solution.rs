@@ -320,7 +320,9 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// Number of elements of the grid whose gap the certificate computed.
+    /// Number of elements whose gap the certificate computed.
+    ///
+    /// With border levels, they have several sizes.
     #[must_use]
     pub fn n_evaluated(&self) -> usize {
         match &self.pressures {
@@ -329,9 +331,9 @@ impl<'a> Solution<'a> {
         }
     }
 
-    /// Number of elements of the grid that are proven to be out of contact.
+    /// Number of elements of the smallest size that are proven to be out of contact.
     ///
-    /// Their gap was not computed. These are all elements that were not evaluated.
+    /// Their gap was not computed. They are the rest of the cell.
     #[must_use]
     pub fn n_proven(&self) -> usize {
         match &self.pressures {
