@@ -41,7 +41,7 @@ impl Reading {
     /// Name in the heads of tables.
     pub(super) fn name(self) -> &'static str {
         match self {
-            Self::Reported => "as it reports",
+            Self::Reported => "as reported",
             Self::Published => "corrected, 0.1181",
             Self::Calibrated => "corrected, 0.1013",
             Self::Extrapolated => "extrapolated",

@@ -128,7 +128,7 @@ fn rounded_up(value: f64) -> String {
 ///
 /// It has our settings and the peers'.
 pub(super) fn scene(results: &Results<'_>, scene: &str, choice: Choice) -> String {
-    let head = "| error below | rc | time | fastest peer, as it reports | time | fastest peer, read in any way | time |\n\
+    let head = "| error below | rc | time | fastest peer, as reported | time | fastest peer, read in any way | time |\n\
                 |---|---|---|---|---|---|---|\n";
     let line = |(quantity, level): (Quantity, f64)| {
         let asked = Asked { quantity, level, choice };
