@@ -11,7 +11,11 @@ All quantities are in SI units. A cell of 1 and an E* of 1 give dimensionless re
 
 :func:`solve` solves one problem and :func:`sweep` many. :class:`Surface` is a random surface, and :func:`surface`
 returns its heights. :func:`read` reads a measured map, :func:`prepare` treats it, and :func:`inspect` describes it.
-:func:`load` reads a result folder. Errors are ``ValueError`` with the message that the command line prints.
+:func:`load` reads a result folder.
+
+Bad input raises a ``ValueError`` with the message that the command line prints. Unknown keywords and some wrong types
+raise a ``TypeError``. Numbers of equations are those of Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method
+for contact mechanics of rough surfaces*, Int. J. Solids Struct. 49 (2012).
 """
 
 from roughcontact._core import __version__

@@ -17,7 +17,7 @@ Method = Literal["adaptive", "uniform", "gauss-seidel"]
 #: A file or a folder.
 Path = Union[str, "os.PathLike[str]"]
 #: Units of the lengths of a file.
-LengthUnit = Literal["m", "mm", "um", "nm"]
+LengthUnit = Literal["m", "cm", "mm", "um", "nm", "angstrom", "pm"]
 
 
 #: Keys that are numbers along x and along y, and may be pairs.

@@ -134,7 +134,7 @@ class Result:
 
     @property
     def cells(self) -> dict[str, Any]:
-        """The summary as a row of a sweep's table, by column. The values of ``leakage`` have one column each."""
+        """The summary as a row of a sweep's table, by column. Of ``leakage`` it has permeances, their errors, and ``percolates``."""
         cells: dict[str, Any] = json.loads(_core.cells(self._source.summary_json(), self.scene))
         return cells
 
@@ -152,7 +152,7 @@ class Result:
 
     @property
     def failure(self) -> str | None:
-        """A sentence that says why the result did not converge. None if it did."""
+        """A sentence that says why the result did not converge. None if it did. Of a result from files it is "not converged"."""
         return self._source.failure
 
     @property
@@ -308,7 +308,7 @@ class Result:
         bins : int or sequence of float, default 50
             Number of equal bins from 0 to the maximum pressure, or the increasing ends of the bins (Pa).
         """
-        wrong = ValueError("bins: must be a positive number, or ends of bins (Pa) that are finite, not negative, and increasing")
+        wrong = ValueError("bins: must be a whole number above 0, or ends of bins (Pa) that are finite, not negative, and increasing")
         if isinstance(bins, (int, np.integer)):
             if isinstance(bins, bool) or bins < 1:
                 raise wrong

@@ -24,6 +24,7 @@ pub struct Cli {
 
 const RC_HELP: &str = "\
 Units are SI; any consistent system works too (cell 1, E* 1 gives dimensionless results).
+Eq. numbers are those of Putignano et al., Int. J. Solids Struct. 49 (2012) 338-343.
 Exit codes: 0 solved, 2 bad input, 3 not converged, 4 could not write, 130 interrupted.";
 
 /// The commands.

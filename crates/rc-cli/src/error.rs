@@ -107,8 +107,20 @@ impl From<&clap::Error> for CliError {
         let text = error.to_string();
         let before_usage = text.split("\n\nUsage:").next().unwrap_or_default();
         let before_usage = before_usage.split("\n\nFor more information").next().unwrap_or_default();
-        Self::input(before_usage.trim_start_matches("error: "))
+        Self::input(in_words(before_usage.trim_start_matches("error: ")))
     }
+}
+
+/// The message with the standard library's words on numbers replaced by what would be right.
+fn in_words(message: &str) -> String {
+    const WORDS: [(&str, &str); 5] = [
+        ("invalid digit found in string", "must be a whole number, not negative"),
+        ("cannot parse integer from empty string", "must be a whole number"),
+        ("number too large to fit in target type", "the number is too large"),
+        ("invalid float literal", "must be a number, as 4.5e5"),
+        ("cannot parse float from empty string", "must be a number, as 4.5e5"),
+    ];
+    WORDS.iter().fold(message.to_owned(), |text, (said, meant)| text.replace(said, meant))
 }
 
 #[cfg(test)]

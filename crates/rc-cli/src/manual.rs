@@ -61,6 +61,20 @@ fn add_page(staged: &mut Staged, command: &clap::Command) -> Result<(), CliError
     let man = clap_mangen::Man::new(command.clone());
     let (name, mut page) = (man.get_filename(), Vec::new());
     man.render(&mut page).map_err(|cause| CliError::write(Path::new(&name), cause))?;
-    staged.add_text(&name, &String::from_utf8_lossy(&page))?;
+    staged.add_text(&name, &with_usage(&String::from_utf8_lossy(&page), command))?;
     command.get_subcommands().try_for_each(|below| add_page(staged, below))
+}
+
+/// The page with the usage of `--help` as its synopsis.
+///
+/// The generated synopsis lacks the values of required options, and does not say which arguments may be repeated.
+fn with_usage(page: &str, command: &clap::Command) -> String {
+    const HEADING: &str = ".SH SYNOPSIS\n";
+    let usage = command.clone().render_usage().to_string();
+    let lines: Vec<&str> = usage.trim_start_matches("Usage: ").lines().map(str::trim).collect();
+    let lines = lines.join("\n.br\n").replace('-', "\\-");
+    match page.split_once(HEADING).and_then(|(before, after)| Some((before, after.split_once('\n')?.1))) {
+        Some((before, after)) => format!("{before}{HEADING}{lines}\n{after}"),
+        None => page.to_owned(),
+    }
 }

@@ -77,7 +77,7 @@ fn in_words(message: &str) -> String {
         other => other,
     };
     let expected = match expected {
-        "usize" | "u64" | "u32" => "a whole number from 0 on",
+        "usize" | "u64" | "u32" => "a whole number, not negative",
         "f64" => "a number",
         "a string" => "text",
         other => other,

@@ -120,8 +120,8 @@ impl OwnKernel {
             return Ok(());
         };
         let message = format!(
-            "kernel: its short waves are at best those of a half-space of {:.4e} Pa, but e_star is {e_star:.4e} Pa, with which the edges \
-             of contacts are located",
+            "kernel: its short waves are closest to those of a half-space with an E* of {:.4e} Pa, but e_star, with which the edges of \
+             contacts are located, is {e_star:.4e} Pa; give that E*, or correct the kernel",
             e_star / nearest
         );
         let message = CString::new(message).map_err(bad_input)?;

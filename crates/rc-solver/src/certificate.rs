@@ -108,7 +108,7 @@ impl std::fmt::Display for Certificate {
         let Self { complementarity, penetration, energy, load } = self;
         write!(
             f,
-            "energy error {energy:.2e}, complementarity error {complementarity:.2e}, penetration error {penetration:.2e}, \
+            "energy error {energy:.2e}, complementarity error {complementarity:.2e}, deepest overlap {penetration:.2e} (both relative to the height range), \
              load error {load:.2e}"
         )
     }

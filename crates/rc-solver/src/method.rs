@@ -116,7 +116,7 @@ impl fmt::Display for MethodReason {
                 )
             }
             Self::ScatteredContact { percent } => {
-                write!(f, "uniform: {} % of the tiles of the adaptive method would be near contact", round(percent))
+                write!(f, "uniform: it is cheaper because {} % of the cell would be near contact", round(percent))
             }
             Self::UniformDoesNotFit { percent } => write!(
                 f,
@@ -131,7 +131,7 @@ impl fmt::Display for MethodReason {
             Self::NoLevels { grid } => {
                 write!(
                     f,
-                    "uniform: the grid {grid} is too coarse for the adaptive method or has no base grid of square elements"
+                    "uniform: the grid {grid} is too coarse for the adaptive method or cannot be halved to a coarse grid of square elements"
                 )
             }
             Self::Flat => write!(f, "uniform: a flat surface needs no adaptive mesh"),

@@ -52,7 +52,7 @@ pub enum SweepError {
         rows: usize,
     },
     /// An ensemble has too many loads for numbers of rows.
-    #[error("{loads} loads are too many for means with an error, at most {most}")]
+    #[error("error_of_mean: at most {most} loads are possible, not {loads}")]
     TooManyMeans {
         /// Number of loads.
         loads: usize,
@@ -120,7 +120,7 @@ pub enum SweepError {
         line: usize,
     },
     /// The folder contains a sweep with other settings.
-    #[error("{}: this folder holds another sweep: {difference}", folder.display())]
+    #[error("{}: this folder holds another sweep: {difference}; give the same settings or another folder", folder.display())]
     OtherSettings {
         /// The folder.
         folder: PathBuf,
@@ -147,7 +147,7 @@ pub enum SweepError {
     #[error("no folder to merge")]
     NoShards,
     /// Two folders to merge belong to different sweeps.
-    #[error("{}: belongs to another sweep than {}: {difference}", folder.display(), first.display())]
+    #[error("{}: belongs to another sweep than {}: {difference}; give shards of one sweep", folder.display(), first.display())]
     NotSameSweep {
         /// The folder.
         folder: PathBuf,
@@ -169,7 +169,7 @@ pub enum SweepError {
         there: Shard,
     },
     /// The rows of two folders to merge were dealt in different ways.
-    #[error("{}: its rows were dealt differently from those of {}", folder.display(), first.display())]
+    #[error("{}: its rows were distributed to shards in another way than those of {}; give shards of one sweep", folder.display(), first.display())]
     OtherDeal {
         /// The folder.
         folder: PathBuf,

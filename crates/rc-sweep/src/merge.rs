@@ -67,7 +67,9 @@ fn read(folders: &[PathBuf]) -> Result<Vec<(&Path, Content)>, SweepError> {
 
 fn check_same_sweep(first: &Path, there: &Header, folder: &Path, here: &Header) -> Result<(), SweepError> {
     let (first, folder) = (first.to_owned(), folder.to_owned());
-    if let Some(difference) = settings::difference(&there.settings, &here.settings) {
+    let places = [&first, &folder].map(|path| format!("in {}", path.display()));
+    let difference = settings::difference((&there.settings, &places[0]), (&here.settings, &places[1]));
+    if let Some(difference) = difference {
         return Err(SweepError::NotSameSweep { folder, first, difference });
     }
     if there.shard.count != here.shard.count {

@@ -2,28 +2,33 @@
 
 use serde_json::Value;
 
-/// The first setting that differs, such as `surfaces[0].surface.waves is 8 there and 16 here`.
-pub(crate) fn difference(there: &Value, here: &Value) -> Option<String> {
-    find_difference("", there, here)
+/// The first setting that differs, such as `surfaces[0].surface.waves is 8 in one and 16 in two`.
+///
+/// Each value comes with words that say where it is, such as `in one`.
+pub(crate) fn difference(there: (&Value, &str), here: (&Value, &str)) -> Option<String> {
+    find_difference("", [there.0, here.0], [there.1, here.1])
 }
 
-fn find_difference(path: &str, there: &Value, here: &Value) -> Option<String> {
+fn find_difference(path: &str, [there, here]: [&Value; 2], places: [&str; 2]) -> Option<String> {
+    let [in_there, in_here] = places;
     match (there, here) {
         (Value::Object(a), Value::Object(b)) => {
             let keys = a.keys().chain(b.keys().filter(|key| !a.contains_key(*key)));
             let at = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
             keys.into_iter().find_map(|key| {
                 let value = |map: &serde_json::Map<String, Value>| map.get(key).cloned().unwrap_or(Value::Null);
-                find_difference(&at(key), &value(a), &value(b))
+                find_difference(&at(key), [&value(a), &value(b)], places)
             })
         }
         (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
             let mut pairs = a.iter().zip(b).enumerate();
-            pairs.find_map(|(i, (a, b))| find_difference(&format!("{path}[{i}]"), a, b))
+            pairs.find_map(|(i, (a, b))| find_difference(&format!("{path}[{i}]"), [a, b], places))
         }
-        (Value::Array(a), Value::Array(b)) => Some(format!("{path} are {} there and {} here", a.len(), b.len())),
+        (Value::Array(a), Value::Array(b)) => {
+            Some(format!("the number of {path} is {} {in_there} and {} {in_here}", a.len(), b.len()))
+        }
         (a, b) if a == b => None,
-        (a, b) => Some(format!("{path} is {a} there and {b} here")),
+        (a, b) => Some(format!("{path} is {a} {in_there} and {b} {in_here}")),
     }
 }
 
@@ -36,18 +41,21 @@ mod tests {
     #[test]
     fn the_first_difference_is_named_with_both_values() {
         let there = json!({"version": "1", "surfaces": [{"waves": 8, "loads": [1.0, 2.0]}]});
-        assert_eq!(difference(&there, &there), None);
+        assert_eq!(difference((&there, "in one"), (&there, "in two")), None);
         for (change, expected) in [
-            (json!({"version": "2"}), "version is \"1\" there and \"2\" here"),
-            (json!({"surfaces": [{"waves": 9, "loads": [1.0, 2.0]}]}), "surfaces[0].waves is 8 there and 9 here"),
-            (json!({"surfaces": [{"waves": 8, "loads": [1.0]}]}), "surfaces[0].loads are 2 there and 1 here"),
-            (json!({"more": 1}), "more is null there and 1 here"),
+            (json!({"version": "2"}), "version is \"1\" in one and \"2\" in two"),
+            (json!({"surfaces": [{"waves": 9, "loads": [1.0, 2.0]}]}), "surfaces[0].waves is 8 in one and 9 in two"),
+            (
+                json!({"surfaces": [{"waves": 8, "loads": [1.0]}]}),
+                "the number of surfaces[0].loads is 2 in one and 1 in two",
+            ),
+            (json!({"more": 1}), "more is null in one and 1 in two"),
         ] {
             let mut here = there.clone();
             for (key, value) in change.as_object().expect("an object") {
                 here[key] = value.clone();
             }
-            assert_eq!(difference(&there, &here).as_deref(), Some(expected));
+            assert_eq!(difference((&there, "in one"), (&here, "in two")).as_deref(), Some(expected));
         }
     }
 
@@ -56,6 +64,6 @@ mod tests {
         let numbers: Vec<f64> = (1..2000).map(|i| (f64::from(i) * 0.7).exp().recip() * 1.1e-4).collect();
         let written = json!(numbers);
         let read: Value = serde_json::from_str(&written.to_string()).expect("valid JSON");
-        assert_eq!(difference(&written, &read), None);
+        assert_eq!(difference((&written, "written"), (&read, "read")), None);
     }
 }

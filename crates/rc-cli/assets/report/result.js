@@ -82,7 +82,7 @@ function stressDistribution({ values: stress, density, fit, notes }) {
   const full = stress[0] > 0.5 * stress[stress.length - 1];
   const points = (of) => stress.map((s, i) => [s, of[i] * factor]);
   const series = [{ name: "solved", points: points(density), colour: "var(--blue)" }];
-  if (fit) series.push({ name: "Persson's form, Eq. 7, fitted", points: points(fit), colour: "var(--red)", dashed: true });
+  if (fit) series.push({ name: "Persson's form, fitted", points: points(fit), colour: "var(--red)", dashed: true });
   const chart = new Chart({
     x: { label: "stress σ", unit: "Pa", from: full ? stress[0] : undefined }, y: { label: `P(σ) (1/${unit})` }, series, switches: ["x", "y"],
   });

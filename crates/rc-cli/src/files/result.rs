@@ -38,9 +38,16 @@ impl ResultFolder {
     /// [`CliError::Input`] with the name of the file that is missing or wrong.
     pub fn read(folder: &Path) -> Result<Self, CliError> {
         if !folder.is_dir() {
-            return Err(CliError::in_file(folder, "no such folder; give the --out folder of a solve"));
+            return Err(CliError::in_file(folder, "no such folder; give the --out folder of a solve or a sweep"));
         }
         let path = folder.join("summary.json");
+        if !path.exists() {
+            return Err(CliError::in_file(
+                folder,
+                "not a result, because it has no summary.json; give the --out folder of a solve, or a folder rows/... of a \
+                 sweep with --fields",
+            ));
+        }
         let text = std::fs::read_to_string(&path)
             .map_err(|cause| CliError::in_file(&path, format_args!("cannot read this summary: {cause}")))?;
         let summary: Summary = serde_json::from_str(&text)

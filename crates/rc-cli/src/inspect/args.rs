@@ -39,7 +39,7 @@ pub(crate) struct InspectArgs {
     pub(crate) height_scale: Option<f64>,
     /// Channel of a file with several [default: the first with heights]
     ///
-    /// The channels are listed first.
+    /// The list of channels is printed before the statistics.
     #[arg(long, value_name = "NAME")]
     pub(crate) channel: Option<String>,
     /// Layout of an ambiguous text: each line a row (matrix) or point (xyz)

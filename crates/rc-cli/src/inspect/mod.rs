@@ -119,7 +119,7 @@ struct Inspected {
     heights: Field,
     record: SurfaceRecord,
     /// Note that is printed before the statistics.
-    note: &'static str,
+    note: String,
 }
 
 impl Inspected {
@@ -134,7 +134,9 @@ impl Inspected {
         let cell = PeriodicCell::rectangle(side, side_y.unwrap_or(side)).map_err(CliError::input)?;
         let (heights, _) = heights::in_cell(path, map.heights, cell)?;
         let grid = heights.grid();
-        let note = if map.sides.is_none() && side_y.is_none() && grid.nx() != grid.ny() { TAKEN } else { "" };
+        let assumed = if map.sides.is_none() && given[0].is_none() { ASSUMED } else { "" };
+        let taken = if map.sides.is_none() && side_y.is_none() && grid.nx() != grid.ny() { TAKEN } else { "" };
+        let note = [assumed, taken].concat();
         let record = SurfaceRecord::of(&heights, side, moments_of_grid(&heights));
         Ok(Self { heights, record, note })
     }
@@ -156,7 +158,7 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
             record.channels = if several { channels.into_iter().map(row).collect() } else { Vec::new() };
             Ok(to_json(&record))
         }
-        Ok((record, note)) => Ok(list(&channels) + note + &text::heights(&record) + &written(args.out.as_deref())),
+        Ok((record, note)) => Ok(list(&channels) + &note + &text::heights(&record) + &written(args.out.as_deref())),
     }
 }
 
@@ -166,7 +168,7 @@ fn list(channels: &[ChannelInfo]) -> String {
 }
 
 /// The record of a height map and a note about its cell. Its pictures are written.
-fn statistics(args: &InspectArgs) -> Result<(SurfaceRecord, &'static str), CliError> {
+fn statistics(args: &InspectArgs) -> Result<(SurfaceRecord, String), CliError> {
     let params = ReadParams { channel: args.channel.clone(), layout: args.layout };
     let map = heights::read(&args.file, &params, Scales { unit: args.unit, height_scale: args.height_scale })?;
     let Inspected { heights, record, note } = Inspected::new(&args.file, map, [args.cell, args.cell_y])?;
@@ -196,7 +198,12 @@ fn inspect_waves(args: &InspectArgs) -> Result<String, CliError> {
     let heights = surface.heights()?;
     let record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments());
     draw(args, &heights, &record)?;
-    Ok(if args.json { to_json(&record) } else { text::heights(&record) + &written(args.out.as_deref()) })
+    let note = if args.cell.is_none() { ASSUMED } else { "" };
+    Ok(if args.json {
+        to_json(&record)
+    } else {
+        note.to_owned() + &text::heights(&record) + &written(args.out.as_deref())
+    })
 }
 
 /// Writes the pictures, if the arguments ask for them.
@@ -210,6 +217,9 @@ fn draw(args: &InspectArgs, heights: &Field, record: &SurfaceRecord) -> Result<(
 
 /// Elements per shortest wave for files of waves.
 const ELEMENTS_PER_WAVE: usize = 4;
+
+/// Note for a map or waves whose cell is the default.
+const ASSUMED: &str = "the file has no size, so a side of 0.01 m is assumed; give --cell, the side along x\n\n";
 
 /// Note for a map whose cell may be meant in two ways.
 const TAKEN: &str = "this map has no size, so it is taken as a square, as in rc solve; its point spacings along x and y then differ; if \

@@ -72,13 +72,14 @@ fn treatments(rows: &[TreatmentRow]) -> String {
     if rows.is_empty() {
         return String::new();
     }
-    let heading =
-        "  treatment           points         missing   rms height   rms slope (Sdq)   border step\n".to_owned();
+    let name = "treatment";
+    let width = rows.iter().map(|row| row.treatment.chars().count()).fold(name.len(), usize::max) + 2;
+    let heading = format!("  {name:<width$}points         missing   rms height   rms slope (Sdq)   border step\n");
     let text = rows.iter().fold(heading, |text, row| {
         let points = format!("{} x {}", row.grid[0], row.grid[1]);
         let (height, slope) = (engineering(row.rms_height, "m"), digits(row.rms_slope, 3));
         let step = row.border_step.map_or_else(|| "-".to_owned(), |ratio| digits(ratio, 3));
-        text + &format!("  {:<20}{points:<15}{:<10}{height:<13}{slope:<18}{step}\n", row.treatment, row.missing)
+        text + &format!("  {:<width$}{points:<15}{:<10}{height:<13}{slope:<18}{step}\n", row.treatment, row.missing)
     });
     text + "\n"
 }

@@ -279,12 +279,12 @@ fn certificate(s: &Summary) -> Certificate {
     rows.extend([
         row("gap where there is pressure", s.complementarity_error, s.tolerance),
         row("deepest overlap", s.penetration_error, s.tolerance),
-        row("load", s.load_error, Some(LOAD_LIMIT)),
+        row(if s.control == "pressure" { "load" } else { "penetration" }, s.load_error, Some(LOAD_LIMIT)),
     ]);
     Certificate {
         rows,
         note: "All errors come from a fresh application of the elastic operator to the pressure that is shown. The error in the energy \
-               norm is relative to the pressure. Gap and overlap are relative to the range of heights, and the load to the given \
+               norm is relative to the pressure. Gap, overlap and penetration are relative to the range of heights, and the load to the given \
                one. The errors bound how far the pressure is from the solution on these elements. The error bar of the area says \
                how far that is from infinitely fine elements.",
     }

@@ -74,7 +74,7 @@ impl SpotSizes {
             counts,
             note: format!(
                 "Spots are connected across edges of elements, and across the sides of a periodic cell. Their edges are located within \
-                 elements. The smallest spots are about as wide as an element, {}, so their number depends on the grid.",
+                 elements. Spots narrower than an element, {}, are not resolved, so the number of small spots depends on the grid.",
                 engineering(root_of_cell * element.sqrt(), "m")
             ),
         })

@@ -191,6 +191,8 @@ pub struct RunKeys {
     #[arg(long, value_name = "N", help_heading = help::MACHINE, allow_hyphen_values = true)]
     pub threads: Option<usize>,
     /// Refuse what is estimated to need more: 500MB, 2GB, or bytes
+    ///
+    /// The program itself, about 10 MB, is not counted.
     #[arg(long, value_name = "SIZE", help_heading = help::MACHINE, allow_hyphen_values = true)]
     pub memory_limit: Option<ByteSize>,
     /// Stop the command after this time, with what there is: 90s, 5min, 1h

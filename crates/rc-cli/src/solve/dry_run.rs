@@ -74,11 +74,15 @@ impl Expected {
                 format!("{count} of {nx} x {ny} to evaluate")
             }
         };
+        let memory = |bytes: f64| {
+            let [all, program] = [bytes, PROCESS_BYTES].map(|bytes| ByteSize(bytes as u64));
+            format!("{all}, of which the program itself {program}")
+        };
         text::aligned(&[
             ("method", self.method.clone()),
             ("elements", or_unknown(self.elements.map(elements))),
-            ("memory", or_unknown(self.memory_bytes.map(|bytes| ByteSize(bytes as u64).to_string()))),
+            ("memory", or_unknown(self.memory_bytes.map(memory))),
             ("time", or_unknown(self.wall_seconds.map(seconds))),
-        ]) + "\nNothing was solved or written; expect elements, memory and time within a factor of two.\n"
+        ]) + "\nNothing was solved or written; elements, memory and time are right within a factor of two if the solve takes seconds.\n"
     }
 }

@@ -13,6 +13,7 @@ use crate::error::CliError;
 use crate::export::{xarray, zarr};
 use crate::run::progress::Progress;
 use crate::run::stop::{Reason, Stop};
+use crate::run::threads;
 use crate::run::together::together;
 use crate::run::watch::Watch;
 use crate::scene::keys::{RunKeys, Scene};
@@ -23,6 +24,8 @@ use crate::{terminal, text};
 pub(super) struct Job {
     pub(super) scene: CheckedScene,
     pub(super) run: RunKeys,
+    /// Number of worker threads of the process.
+    threads: usize,
     /// Whether the solve is drawn while it runs.
     watch: bool,
     /// Whether ranks write the fields together, as a Zarr group.
@@ -32,25 +35,27 @@ pub(super) struct Job {
 }
 
 impl Job {
-    /// Checks `scene`.
+    /// Starts the threads and checks `scene`.
     ///
     /// # Errors
     /// [`CliError::Input`].
     pub(super) fn new(scene: Scene, watch: bool) -> Result<Self, CliError> {
         let Scene { surface, contact, run } = scene;
         let started = Instant::now();
+        // A file of waves is read with these threads.
+        let threads = threads::start(run.threads)?;
         let scene = CheckedScene::new(surface, contact)?;
-        Ok(Self { scene, run, watch, zarr: false, started })
+        Ok(Self { scene, run, threads, watch, zarr: false, started })
     }
 
     /// Prints an estimate of the cost of the job.
     ///
     /// # Errors
     /// [`CliError::Input`].
-    pub(super) fn dry_run(&self, threads: usize) -> Result<(), CliError> {
+    pub(super) fn dry_run(&self) -> Result<(), CliError> {
         let (kernel, surface) = (self.scene.contact.kernel()?, self.scene.surface.load()?);
         let problem = self.scene.problem(&surface, &*kernel, self.budget());
-        dry_run::run(&problem, threads, &self.run)
+        dry_run::run(&problem, self.threads, &self.run)
     }
 
     /// The job with fields that the ranks write together, as a Zarr group.
@@ -75,11 +80,9 @@ impl Job {
 
     /// Solves, writes and prints.
     ///
-    /// `threads` is the number in the summary.
-    ///
     /// # Errors
     /// [`CliError`] of every kind.
-    pub(super) fn execute(&self, threads: usize) -> Result<(), CliError> {
+    pub(super) fn execute(&self) -> Result<(), CliError> {
         let ranks = self.ranks();
         if let Some(folder) = &self.run.out {
             let checked = if ranks.rank() == 0 { files::check_folder(folder).map_err(Into::into) } else { Ok(()) };
@@ -91,7 +94,7 @@ impl Job {
         let surface = together(ranks, self.scene.surface.load())?;
         let problem = self.scene.problem(&surface, &*kernel, self.budget());
         let solved = self.scene.solve(problem, self.started, &progress)?;
-        self.finish(&solved, threads, progress)
+        self.finish(&solved, progress)
     }
 
     /// The ranks that solve the problem together.
@@ -110,9 +113,9 @@ impl Job {
     }
 
     /// Writes and prints the result.
-    fn finish(&self, solved: &Solved<'_>, threads: usize, progress: Progress) -> Result<(), CliError> {
+    fn finish(&self, solved: &Solved<'_>, progress: Progress) -> Result<(), CliError> {
         let stopped = progress.stopped();
-        let summary = solved.summary(threads);
+        let summary = solved.summary(self.threads);
         if let Some(folder) = &self.run.out {
             if self.zarr {
                 solved.write_shared(folder, &summary)?;
@@ -163,7 +166,7 @@ mod tests {
         let run = RunKeys { out: Some(dir.path().join("r")), quiet: true, ..RunKeys::default() };
         let mut job = Job::new(Scene { run, ..scene }, false).expect("a job");
         job.scene.contact.params.max_iterations = 1;
-        let error = job.execute(1).expect_err("one iteration is too few");
+        let error = job.execute().expect_err("one iteration is too few");
         assert_eq!(error.exit_code(), 3, "{error}");
         assert!(error.to_string().contains("complementarity error"), "no residuals: {error}");
         let text = std::fs::read_to_string(dir.path().join("r/summary.json")).expect("a summary");

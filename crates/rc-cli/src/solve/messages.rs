@@ -111,6 +111,6 @@ fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
 pub(super) fn not_converged(grid: Grid, iterations: usize, certificate: &Certificate, bound: ErrorBound) -> String {
     format!(
         "not converged to {bound} on {grid} elements after {iterations} iterations: {certificate}; give \
-         a larger tolerance or a longer time limit; other causes are in the guide's page of questions"
+         a larger tolerance or a longer time limit; for other causes see Questions in the guide (docs/faq.md)"
     )
 }

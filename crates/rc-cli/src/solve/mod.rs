@@ -26,7 +26,7 @@ use std::path::PathBuf;
 use self::args::SolveArgs;
 use self::job::Job;
 use crate::error::CliError;
-use crate::run::{stop, threads};
+use crate::run::stop;
 use crate::scene::keys::{RunKeys, Scene};
 use crate::scene::{file, resolve};
 use crate::terminal;
@@ -53,12 +53,11 @@ pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
         ));
     }
     let job = Job::new(scene, watch)?;
-    let threads = threads::start(job.run.threads)?;
     stop::listen();
     if dry_run {
-        return job.dry_run(threads);
+        return job.dry_run();
     }
-    job.execute(threads)
+    job.execute()
 }
 
 /// The scene of the command line.

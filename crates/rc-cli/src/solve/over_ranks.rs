@@ -15,8 +15,8 @@ use super::scene_of;
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
 use crate::help;
+use crate::run::stop;
 use crate::run::together::together;
-use crate::run::{stop, threads};
 use crate::scene::file;
 use crate::scene::keys::Scene;
 use crate::scene::resolve::Place;
@@ -90,12 +90,11 @@ fn run(args: RanksArgs, ranks: &Ranks) -> Result<(), CliError> {
     }
     let dry_run = solve.dry_run;
     let job = together(ranks, prepare(solve, (checkpoint.as_deref(), zarr), ranks))?;
-    let threads = together(ranks, threads::start(job.run.threads))?;
     stop::listen();
     if dry_run {
-        return if ranks.rank() == 0 { job.dry_run(threads) } else { Ok(()) };
+        return if ranks.rank() == 0 { job.dry_run() } else { Ok(()) };
     }
-    job.execute(threads)?;
+    job.execute()?;
     if let (Some(file), 0) = (&job.scene.contact.place.checkpoint, ranks.rank()) {
         if let Some(failure) = file.failure() {
             terminal::tell(&format!("checkpoint: {failure}; the result does not need it"));

@@ -10,6 +10,8 @@ use crate::scene::keys::{RunKeys, SurfaceKeys};
 /// Arguments of `rc surface`.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = SURFACE_HELP)]
+// Only solves have a time limit.
+#[command(mut_arg("time_limit", |limit| limit.hide(true)))]
 #[command(mut_arg("out", |out| out.value_name("DIR|FILE").help("Folder, or FILE.npy or FILE.csv; without it nothing is written")))]
 pub(crate) struct SurfaceArgs {
     /// Scene file; its keys of the contact are ignored

@@ -38,6 +38,9 @@ struct Prepared {
 /// # Errors
 /// [`CliError`].
 pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
+    if args.run.time_limit.is_some() {
+        return Err(CliError::input("time_limit: rc surface has none; omit --time-limit"));
+    }
     let flags = Scene { surface: args.surface, contact: ContactKeys::default(), run: args.run };
     let scene = resolve::layers(args.scene_file.as_deref(), flags)?;
     let treatments = args.treatment.treatments().map_err(|cause| CliError::input(format_args!("resample: {cause}")))?;

@@ -56,8 +56,12 @@ pub(super) fn write_folder(
     side: f64,
 ) -> Result<(), FileError> {
     let (field, factor) = in_metres(surface, heights, side);
-    let scene =
-        format!("# The surface; `rc solve scene.toml --pressure ...` presses it.\n\n{}", file::to_toml(&surface.keys));
+    // A generated surface has a default material, the others have none.
+    let material = if surface.keys.heights.is_some() || surface.keys.spectrum.is_some() { "--e-star ... " } else { "" };
+    let scene = format!(
+        "# The surface; `rc solve scene.toml {material}--pressure ...` presses it.\n\n{}",
+        file::to_toml(&surface.keys)
+    );
     let range = (heights.min(), heights.max());
     let shade = Shade::Values { range, palette: Palette::Viridis, factor: side, unit: "m" };
     let picture = MapPicture(Map { title: "Height", field: heights, shade, side });

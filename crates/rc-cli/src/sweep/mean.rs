@@ -17,7 +17,6 @@ use super::messages;
 use super::realisations::Realisations;
 use super::surfaces::{Surfaces, SweptSurface};
 use crate::error::CliError;
-use crate::run::threads;
 use crate::scene::surface::Source;
 use crate::{terminal, text};
 
@@ -39,7 +38,7 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
     let folder = run.out.clone().ok_or_else(missing)?;
     let (surface, control) = (surfaces.only()?, surfaces.control());
     let plan = plan(surface, control)?;
-    let threads = threads::start(run.threads)?;
+    let threads = surfaces.threads;
     let started = Instant::now();
     let ensemble = Arc::new(Ensemble::start(plan, &folder, args.resume)?);
     let n_before = ensemble.kept().rows().len();

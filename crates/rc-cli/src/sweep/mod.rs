@@ -29,7 +29,6 @@ use self::bar::RowBar;
 use self::rows::SceneRows;
 use self::surfaces::Surfaces;
 use crate::error::CliError;
-use crate::run::threads;
 use crate::terminal;
 
 /// Runs `rc sweep`.
@@ -54,14 +53,13 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     }
     let (shard, folder) = part::resolve(args.shard, &folder)?;
     plan.check_shard(shard)?;
-    let threads = threads::start(surfaces.run.threads)?;
     let sweep = Sweep::start(part::deal(plan, shard, &surfaces), shard, &folder, args.resume)?;
-    execute(&surfaces, &Arc::new(sweep), threads)
+    execute(&surfaces, &Arc::new(sweep))
 }
 
 /// Solves the missing rows and reports the result.
-fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>, threads: usize) -> Result<(), CliError> {
-    let started = Instant::now();
+fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
+    let (started, threads) = (Instant::now(), surfaces.threads);
     let n_rows = sweep.n_rows();
     let n_before = n_rows - sweep.todo().len();
     let bar = RowBar::new(n_before, n_rows, surfaces.run.quiet);

@@ -10,6 +10,7 @@ use serde_json::json;
 
 use super::args::SweepArgs;
 use crate::error::CliError;
+use crate::run::threads;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene};
 use crate::scene::resolve::{self, ContactSetup};
 use crate::scene::surface::{Source, SurfaceSetup};
@@ -40,16 +41,21 @@ pub(super) struct Surfaces {
     n_scenes: usize,
     keeps_fields: bool,
     pub(super) run: RunKeys,
+    /// Number of worker threads of the process.
+    pub(super) threads: usize,
 }
 
 impl Surfaces {
-    /// Reads and checks scenes and lists.
+    /// Starts the threads, and reads and checks scenes and lists.
     ///
     /// # Errors
     /// [`CliError::Input`].
     pub(super) fn new(args: &SweepArgs) -> Result<Self, CliError> {
         check_alternatives(args)?;
         let scenes = scenes(args)?;
+        let run = scenes.first().map(|(_, scene)| scene.run.clone()).unwrap_or_default();
+        // Files of waves are read with these threads.
+        let threads = threads::start(run.threads)?;
         let control = control(args, &scenes)?;
         let mut surfaces = Vec::new();
         for (name, scene) in &scenes {
@@ -59,8 +65,7 @@ impl Surfaces {
                 surfaces.push(SweptSurface::new(name, keys, control, &loads)?);
             }
         }
-        let run = scenes.first().map(|(_, scene)| scene.run.clone()).unwrap_or_default();
-        Ok(Self { control, all: surfaces, n_scenes: scenes.len(), keeps_fields: args.fields, run })
+        Ok(Self { control, all: surfaces, n_scenes: scenes.len(), keeps_fields: args.fields, run, threads })
     }
 
     /// The plan of the sweep.

@@ -1,4 +1,4 @@
-//! The Kaiser-Bessel window χ(x) = 1 - Ψ(x) and its transform.
+//! The function χ(x) = 1 - Ψ(x), where Ψ is the integral of a Kaiser-Bessel window, and its transform.
 //!
 //! ```text
 //! Ψ(x) = ∫₀^x I₀(β√(1-t²)) dt / ∫₀¹ I₀(β√(1-t²)) dt        (∫₀¹ = sinh β / β),     Ψ = 1 from x = 1 on
@@ -13,7 +13,7 @@ use crate::gauss_legendre::gauss_legendre;
 /// The expansions reach rounding accuracy up to β = 24 and cutoffs of 24 elements.
 const TERMS: usize = 64;
 
-/// The window χ, tabulated.
+/// The function χ, tabulated.
 #[derive(Clone, Debug)]
 pub(crate) struct Window {
     /// Ψ(x)/x in Chebyshev polynomials of x², of which it is an entire function.
