@@ -120,7 +120,7 @@ pub enum SweepError {
         line: usize,
     },
     /// The folder contains a sweep with other settings.
-    #[error("{}: this folder holds another sweep: {difference}; give the same settings or another folder", folder.display())]
+    #[error("{}: this folder holds another sweep: {difference}", folder.display())]
     OtherSettings {
         /// The folder.
         folder: PathBuf,
@@ -147,7 +147,7 @@ pub enum SweepError {
     #[error("no folder to merge")]
     NoShards,
     /// Two folders to merge belong to different sweeps.
-    #[error("{}: belongs to another sweep than {}: {difference}; give shards of one sweep", folder.display(), first.display())]
+    #[error("{}: belongs to another sweep than {}: {difference}", folder.display(), first.display())]
     NotSameSweep {
         /// The folder.
         folder: PathBuf,
@@ -169,7 +169,7 @@ pub enum SweepError {
         there: Shard,
     },
     /// The rows of two folders to merge were dealt in different ways.
-    #[error("{}: its rows were distributed to shards in another way than those of {}; give shards of one sweep", folder.display(), first.display())]
+    #[error("{}: its rows were distributed to shards in another way than those of {}", folder.display(), first.display())]
     OtherDeal {
         /// The folder.
         folder: PathBuf,

@@ -38,7 +38,7 @@ impl ResultFolder {
     /// [`CliError::Input`] with the name of the file that is missing or wrong.
     pub fn read(folder: &Path) -> Result<Self, CliError> {
         if !folder.is_dir() {
-            return Err(CliError::in_file(folder, "no such folder; give the --out folder of a solve or a sweep"));
+            return Err(CliError::in_file(folder, "no such folder; give the --out folder of a solve"));
         }
         let path = folder.join("summary.json");
         if !path.exists() {

@@ -7,6 +7,7 @@ use rc_solver::StressDistribution;
 use rc_theory::persson::Persson;
 use serde::Serialize;
 
+use super::certificate::Certificate;
 use super::command::{flags, quoted};
 use super::embedded::{Bits, EmbeddedField, MOST_PIXELS, pixel_means};
 use super::flow_picture::FlowPicture;
@@ -27,9 +28,6 @@ const BINS: usize = 80;
 
 /// Ratio of a gap to the maximum height below which the gap counts as zero.
 const ROUNDING: f64 = 1e-9;
-
-/// Limit of the relative error of the load, for any tolerance.
-const LOAD_LIMIT: f64 = 1e-10;
 
 /// The data of a page of a contact, without those of all pages.
 #[derive(Clone, Debug, Serialize)]
@@ -72,21 +70,6 @@ struct Stress {
     notes: Vec<String>,
 }
 
-#[derive(Clone, Debug, Serialize)]
-struct Certificate {
-    rows: Vec<CertificateRow>,
-    note: &'static str,
-}
-
-#[derive(Clone, Debug, Serialize)]
-struct CertificateRow {
-    name: &'static str,
-    value: String,
-    limit: String,
-    /// Whether the value is below its limit; `None` without a limit.
-    holds: Option<bool>,
-}
-
 /// The page of the result in `folder`.
 ///
 /// # Errors
@@ -120,7 +103,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
         body: Contact {
             maps: maps(&result),
             stress: stress(&result),
-            certificate: certificate(summary),
+            certificate: Certificate::of(summary),
             lines: text::solved_lines(summary, result.sides(), result.e_star),
             leakage: FlowPicture::of(folder, summary),
             // This comes last, since it takes the fields.
@@ -265,39 +248,19 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
     Some(Stress { values: stress, density: distribution.density, fit: fitted, notes })
 }
 
-fn certificate(s: &Summary) -> Certificate {
-    let row = |name, value: f64, limit: Option<f64>| CertificateRow {
-        name,
-        value: format!("{value:.1e}"),
-        limit: limit.map_or_else(|| "not asked for".to_owned(), |limit| format!("{limit:.1e}")),
-        holds: limit.map(|limit| value <= limit),
-    };
-    let mut rows = Vec::new();
-    if let Some(energy) = s.energy_error {
-        rows.push(row("pressure, in the energy norm", energy, s.energy_tolerance));
-    }
-    rows.extend([
-        row("gap where there is pressure", s.complementarity_error, s.tolerance),
-        row("deepest overlap", s.penetration_error, s.tolerance),
-        row(if s.control == "pressure" { "load" } else { "penetration" }, s.load_error, Some(LOAD_LIMIT)),
-    ]);
-    Certificate {
-        rows,
-        note: "All errors come from a fresh application of the elastic operator to the pressure that is shown. The error in the energy \
-               norm is relative to the pressure. Gap, overlap and penetration are relative to the range of heights, and the load to the given \
-               one. The errors bound how far the pressure is from the solution on these elements. The error bar of the area says \
-               how far that is from infinitely fine elements.",
-    }
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use rc_core::{Field, Grid};
 
     use super::*;
 
     /// A summary with equal numbers, except those that a test is about.
-    fn summary(grid: Grid, mean_pressure: f64, rms_slope: f64, tolerance: Option<f64>) -> Summary {
+    pub(in crate::report) fn summary(
+        grid: Grid,
+        mean_pressure: f64,
+        rms_slope: f64,
+        tolerance: Option<f64>,
+    ) -> Summary {
         let mut keys = serde_json::Map::new();
         for text in ["status", "control", "kernel", "method", "version"] {
             keys.insert(text.to_owned(), "love".into());
@@ -364,14 +327,6 @@ mod tests {
             assert!((part - 1.0).abs() < 0.02, "mean {mean_pressure}: {note}");
             assert!(stress.values[0] > 0.5 * mean_pressure, "bins from {}", stress.values[0]);
         }
-    }
-
-    #[test]
-    fn limits_have_two_digits_and_those_that_were_not_asked_for_do_not_hold() {
-        let grid = Grid::square(2).expect("a grid");
-        let rows = |tolerance| certificate(&summary(grid, 1.0, 0.1, tolerance)).rows;
-        assert_eq!((rows(Some(2.5e-6))[0].limit.as_str(), rows(Some(2.5e-6))[0].holds), ("2.5e-6", Some(false)));
-        assert_eq!((rows(None)[0].limit.as_str(), rows(None)[0].holds), ("not asked for", None));
     }
 
     #[test]

@@ -6,6 +6,7 @@
 
 pub(crate) mod args;
 
+mod certificate;
 mod command;
 mod contact;
 mod curves;
@@ -47,6 +48,9 @@ pub(crate) fn run(args: &ReportArgs) -> Result<(), CliError> {
     let target = args.out.clone().unwrap_or_else(|| args.folder.join(PAGE_FILE));
     if target.is_dir() {
         return Err(CliError::in_file(&target, format_args!("is a folder; give --out FILE, as {PAGE_FILE}")));
+    }
+    if !args.folder.is_dir() {
+        return Err(CliError::in_file(&args.folder, "no such folder; give the --out folder of a solve or a sweep"));
     }
     let page = html(&args.folder)?;
     files::check_folder(target.parent().unwrap_or(Path::new("")))?;

@@ -40,6 +40,7 @@ fn refused(error: &SweepError) -> CliError {
         SweepError::NoNumber { .. } => "; choose another --mean-of",
         SweepError::NoShards => "; give those of all shards",
         SweepError::MissingRows { .. } => "; finish it with --resume",
+        SweepError::NotSameSweep { .. } | SweepError::OtherDivision { .. } => "; give the shards of one sweep",
         SweepError::OtherDeal { .. } => "; solve all shards with one version of rc",
         SweepError::MissingShard { .. } => "; give the folders of all shards",
         SweepError::MissingFields { .. } => "; --resume in the folder of the shard makes them again",

@@ -119,7 +119,7 @@ mod tests {
         let cells = rows.solve_contact(&row, &contact).expect("cells, not an error");
         assert_eq!(cells["status"], json!("not_converged"));
         sweep.keep(&row, cells).expect("a row");
-        let error = execute(&surfaces, &Arc::new(sweep), 1).expect_err("a row did not converge");
+        let error = execute(&surfaces, &Arc::new(sweep)).expect_err("a row did not converge");
         assert_eq!(error.exit_code(), 3, "{error}");
         assert!(error.to_string().starts_with("1 of 2 rows did not converge"), "{error}");
         let table = std::fs::read_to_string(out.join(TABLE_FILE)).expect("a table");

@@ -37,7 +37,8 @@ fn bad_values_of_the_surface_are_refused_with_their_key() {
         (&["--rms", "-1e-6"], "rms"),
         (&["--hurst", "2"], "hurst"),
         (&["--roll-off", "9"], "roll_off"),
-        (&["--seed", "-1"], "seed"),
+        (&["--seed", "-1"], "'-1' for '--seed <SEED>': must be a whole number, not negative"),
+        (&["--rms", "x"], "'x' for '--rms <M>': must be a number, as 4.5e5"),
         (&["--seed", "18446744073709551615"], "seed"),
         (&["--rms", "1", "--c0", "1"], "alternatives"),
     ];

@@ -60,6 +60,7 @@ fn the_page_of_a_result_has_its_fields_and_the_commands_that_repeat_it() {
     let rows = page["certificate"]["rows"].as_array().expect("rows");
     let holds: Vec<Option<bool>> = rows.iter().map(|row| row["holds"].as_bool()).collect();
     assert_eq!(holds, [Some(true), None, None, Some(true)]);
+    assert_eq!(rows[3]["name"], "load");
     let counts = page["spots"]["counts"].as_array().expect("counts").iter().filter_map(Value::as_u64).sum::<u64>();
     assert_eq!(page["spots"]["rows"][0][1], counts.to_string().as_str(), "spots in the bins and in the table");
     let commands = page["commands"].as_array().expect("commands");

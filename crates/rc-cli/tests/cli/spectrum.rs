@@ -51,6 +51,19 @@ fn a_file_of_waves_is_a_surface_on_any_grid_by_any_method() {
 }
 
 #[test]
+fn waves_are_read_with_any_number_of_threads() {
+    let place = place();
+    for threads in ["1", "3"] {
+        assert_solved(&place.run(&solve(&["--grid", "64", "--threads", threads, "--out", threads])));
+        let folder = format!("sweep-{threads}");
+        let args = ["sweep", "--spectrum", "waves.txt", "--pressures", "1e5,3e5", "--grid", "64", "--quiet"];
+        let more = ["--threads", threads, "--out", &folder];
+        assert_solved(&place.run(&[&args[..], &CELL, &MATERIAL, &more].concat()));
+    }
+    assert!(place.bytes("1/pressure.npy") == place.bytes("3/pressure.npy"), "the digits depend on the threads");
+}
+
+#[test]
 fn a_result_of_waves_is_repeated_from_its_own_folder_alone() {
     let place = place();
     for method in ["uniform", "adaptive"] {

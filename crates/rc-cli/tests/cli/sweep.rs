@@ -166,7 +166,7 @@ fn incomplete_and_unlike_shards_are_not_merged() {
     let cases: &[(&[&str], &str)] = &[
         (&["one"], "shard 2/2 is missing"),
         (&["one", "one"], "is shard 1/2, as is one"),
-        (&["one", "other"], "loads[1] is 200000.0 there and 300000.0 here"),
+        (&["one", "other"], "loads[1] is 200000.0 in one and 300000.0 in other"),
         (&["one", "third"], "belongs to another sweep"),
         (&["one", "torn"], "torn: 1 rows of shard 2/2 are missing"),
         (&["one", "nothing"], "nothing: no sweep"),

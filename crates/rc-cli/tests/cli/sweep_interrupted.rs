@@ -127,15 +127,15 @@ fn settings_that_differ_are_named() {
     let before = place.contents("s");
     assert_refused(&run("1e5,2e5", &[]), "s: holds a sweep already; --resume goes on with it");
     let cases: &[(&str, &[&str], &str)] = &[
-        ("1e5,3e5", &[], "surfaces[0].loads[1] is 200000.0 there and 300000.0 here"),
-        ("1e5,2e5", &["--seeds", "1..2"], "surfaces are 1 there and 2 here"),
-        ("1e5,2e5", &["--seed", "2"], "surfaces[0].surface.seed is 1 there and 2 here"),
+        ("1e5,3e5", &[], "surfaces[0].loads[1] is 200000.0 there and 300000.0 in this one"),
+        ("1e5,2e5", &["--seeds", "1..2"], "the number of surfaces is 1 there and 2 in this one"),
+        ("1e5,2e5", &["--seed", "2"], "surfaces[0].surface.seed is 1 there and 2 in this one"),
         (
             "1e5,2e5",
             &["--energy-tolerance", "0.02"],
-            "surfaces[0].contact.energy_tolerance is 0.01 there and 0.02 here",
+            "surfaces[0].contact.energy_tolerance is 0.01 there and 0.02 in this one",
         ),
-        ("1e5,2e5", &["--fields"], "fields is false there and true here"),
+        ("1e5,2e5", &["--fields"], "fields is false there and true in this one"),
         ("1e5,2e5", &["--shard", "1/2"], "holds shard 1/1, not 1/2"),
     ];
     for (pressures, more, expected) in cases {

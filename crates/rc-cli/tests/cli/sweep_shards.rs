@@ -108,8 +108,7 @@ fn shards_of_before_are_resumed_and_merged_as_they_were_dealt() {
     // The row of the largest load takes longer than the two others together.
     assert_solved(&run("new-2", &["--shard", "2/2"]));
     let merge = |folders: [&str; 2]| place.run(&[&["sweep", "merge"], &folders[..], &["--out", "merged"]].concat());
-    let expected =
-        "new-2: its rows were dealt differently from those of old-1; solve all shards with one version of rc";
+    let expected = "new-2: its rows were distributed to shards in another way than those of old-1; solve all shards with one version of rc";
     assert_refused(&merge(["old-1", "new-2"]), expected);
     assert_solved(&merge(["old-1", "old-2"]));
     assert_eq!(result(&place.path("merged")), result(&place.path("whole")));

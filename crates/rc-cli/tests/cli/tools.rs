@@ -10,6 +10,7 @@ fn a_surface_is_converted_without_loss() {
         assert_solved(&place.run(&[&surface[..], &[target]].concat()));
     }
     assert_eq!(place.names("s"), ["heights.npy", "scene.toml", "surface.json", "surface.png"]);
+    assert_refused(&place.run(&["surface", "--time-limit", "1s"]), "time_limit: rc surface has none");
     assert_eq!(place.names("."), ["s", "s.csv", "s.npy"]);
     assert!(place.bytes("s/heights.npy") == place.bytes("s.npy"), "two ways to write heights differ");
     assert_solved(&place.run(&["surface", "--heights", "s.csv", "--cell", "0.01", "--quiet", "--out", "again.npy"]));
@@ -111,6 +112,8 @@ fn shells_and_man_know_every_command() {
         page.starts_with(".ie") && page.contains("A flag also replaces its alternatives"),
         "not the long text: {page}"
     );
+    let page = text(&place.bytes("man/rc-sweep-merge.1"));
+    assert!(page.contains("\nrc sweep merge [OPTIONS] \\-\\-out <DIR> <DIR>...\n"), "not the usage: {page}");
 }
 
 #[test]
