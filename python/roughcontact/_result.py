@@ -152,7 +152,10 @@ class Result:
 
     @property
     def failure(self) -> str | None:
-        """A sentence that says why the result did not converge. None if it did. Of a result from files it is "not converged"."""
+        """A sentence that says why the result did not converge. None if it did.
+
+        A result that was loaded or unpickled says only "not converged".
+        """
         return self._source.failure
 
     @property

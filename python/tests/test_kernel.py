@@ -100,7 +100,7 @@ def test_axes_may_differ_where_the_grid_does(heights):
 
 
 def test_another_material_than_that_of_short_waves_is_named(heights):
-    message = r"^kernel: its short waves are closest to those of a half-space with an E\* of"
+    message = r"^kernel: the nearest of its short waves is that of a half-space with an E\* of"
     for factor, named in ((2.0, "5.0000e8 Pa, but e_star, .*, is 1.0000e9 Pa"), (1 / 0.91, "9.1000e8 Pa")):
         with pytest.warns(UserWarning, match=f"{message} {named}"):
             rc.solve(heights, **CONTACT, kernel=lambda kx, ky: factor * half_space(kx, ky))

@@ -94,7 +94,7 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
         Command::Plot(args) => plot::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Export(args) => export::run(&args),
-        Command::Completions(args) => manual::completions(Cli::command(), args.shell),
+        Command::Completions(args) => manual::completions(&Cli::command(), args.shell),
         Command::Man(args) => manual::pages(Cli::command(), &args.out),
     }
 }

@@ -37,10 +37,25 @@ pub(crate) struct ManArgs {
 ///
 /// # Errors
 /// [`CliError::Write`].
-pub(crate) fn completions(mut rc: clap::Command, shell: Shell) -> Result<(), CliError> {
+pub(crate) fn completions(rc: &clap::Command, shell: Shell) -> Result<(), CliError> {
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut rc, "rc", &mut script);
+    clap_complete::generate(shell, &mut without_hidden(rc), "rc", &mut script);
     terminal::print(&String::from_utf8_lossy(&script))
+}
+
+/// The command without hidden arguments, which shells would offer.
+fn without_hidden(command: &clap::Command) -> clap::Command {
+    let shown = command.get_arguments().filter(|argument| !argument.is_hide_set()).cloned();
+    let mut copy = clap::Command::new(command.get_name().to_owned())
+        .about(command.get_about().cloned().unwrap_or_default())
+        .disable_help_flag(true)
+        .disable_help_subcommand(true)
+        .args(shown)
+        .subcommands(command.get_subcommands().map(without_hidden));
+    if let Some(version) = command.get_version() {
+        copy = copy.version(version.to_owned());
+    }
+    copy
 }
 
 /// Writes a page for `rc` and one for each of its commands.

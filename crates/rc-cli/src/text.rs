@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rc_core::quantity::{digits, engineering};
-use rc_sweep::{LeakageSummary, Summary};
+use rc_sweep::{ControlKind, LeakageSummary, Summary};
 
 /// A few aligned lines about a solved problem.
 ///
@@ -124,8 +124,9 @@ fn surface_line(s: &Summary) -> String {
 
 fn certificate_line(s: &Summary) -> String {
     let energy = s.energy_error.map_or_else(String::new, |energy| format!("energy {energy:.1e}, "));
+    let control = if s.control == ControlKind::Penetration.key() { "penetration" } else { "load" };
     format!(
-        "{energy}complementarity {:.1e} and deepest overlap {:.1e} of the height range, load {:.1e}",
+        "{energy}complementarity {:.1e} and deepest overlap {:.1e} of the height range, {control} {:.1e}",
         s.complementarity_error, s.penetration_error, s.load_error
     )
 }

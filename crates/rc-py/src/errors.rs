@@ -77,7 +77,7 @@ fn in_words(message: &str) -> String {
         other => other,
     };
     let expected = match expected {
-        "usize" | "u64" | "u32" => "a whole number, not negative",
+        "usize" | "u64" | "u32" => "a whole number of at least 0",
         "f64" => "a number",
         "a string" => "text",
         other => other,

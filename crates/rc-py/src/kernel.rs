@@ -120,8 +120,8 @@ impl OwnKernel {
             return Ok(());
         };
         let message = format!(
-            "kernel: its short waves are closest to those of a half-space with an E* of {:.4e} Pa, but e_star, with which the edges of \
-             contacts are located, is {e_star:.4e} Pa; give that E*, or correct the kernel",
+            "kernel: the nearest of its short waves is that of a half-space with an E* of {:.4e} Pa, but e_star, with which the edges of \
+             contacts are located, is {e_star:.4e} Pa; give the E* of short waves, or correct the kernel",
             e_star / nearest
         );
         let message = CString::new(message).map_err(bad_input)?;

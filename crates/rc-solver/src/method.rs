@@ -131,7 +131,7 @@ impl fmt::Display for MethodReason {
             Self::NoLevels { grid } => {
                 write!(
                     f,
-                    "uniform: the grid {grid} is too coarse for the adaptive method or cannot be halved to a coarse grid of square elements"
+                    "uniform: the grid {grid} is too coarse for the adaptive method or no coarse grid of nearly square elements fits it"
                 )
             }
             Self::Flat => write!(f, "uniform: a flat surface needs no adaptive mesh"),

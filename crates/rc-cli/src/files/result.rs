@@ -11,6 +11,9 @@ use crate::scene::resolve;
 use rc_heights::npy;
 use rc_sweep::Summary;
 
+/// File with the summary of a solve.
+pub(crate) const SUMMARY_FILE: &str = "summary.json";
+
 /// File of the overlap that plastic flow has removed, with a hardness.
 pub const PLASTIC_GAP_FILE: &str = "plastic_gap.npy";
 
@@ -40,7 +43,7 @@ impl ResultFolder {
         if !folder.is_dir() {
             return Err(CliError::in_file(folder, "no such folder; give the --out folder of a solve"));
         }
-        let path = folder.join("summary.json");
+        let path = folder.join(SUMMARY_FILE);
         if !path.exists() {
             return Err(CliError::in_file(
                 folder,

@@ -19,7 +19,7 @@ use serde::Serialize;
 use self::args::InspectArgs;
 use self::record::{ChannelRow, SurfaceRecord};
 use crate::error::CliError;
-use crate::files::result::ResultFolder;
+use crate::files::result::{ResultFolder, SUMMARY_FILE};
 use crate::scene::keys::SurfaceKeys;
 use crate::scene::surface::{HEIGHTS_FILE, LoadedSurface};
 use crate::scene::values::GridSpec;
@@ -28,7 +28,7 @@ use crate::terminal;
 use crate::text::{solved, written};
 
 /// Names of files that identify a result.
-const RESULT_FILES: [&str; 2] = ["summary.json", "pressure.npy"];
+const RESULT_FILES: [&str; 2] = [SUMMARY_FILE, "pressure.npy"];
 
 /// Statistics of a result, with its summary.
 #[derive(Serialize)]
@@ -66,9 +66,9 @@ fn result_folder(file: &Path) -> Option<PathBuf> {
         return Some(file.to_owned());
     }
     let name = file.file_name()?.to_str()?;
-    let folder = file.parent()?;
+    let folder = file.parent().map(|folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder })?;
     let complete = RESULT_FILES.iter().all(|other| folder.join(other).is_file());
-    (name == "summary.json" || RESULT_FILES.contains(&name) && complete).then(|| folder.to_owned())
+    (name == SUMMARY_FILE || RESULT_FILES.contains(&name) && complete).then(|| folder.to_owned())
 }
 
 /// The text of `rc inspect --json` for the result in `folder`.
@@ -101,7 +101,7 @@ pub fn surface(surface: &LoadedSurface, side: f64) -> Result<String, CliError> {
 fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
     // A folder of `rc surface` has heights, but not pressures.
     let heights = folder.join(HEIGHTS_FILE);
-    if !folder.join("summary.json").exists() && heights.is_file() {
+    if !folder.join(SUMMARY_FILE).exists() && heights.is_file() {
         return Err(CliError::in_file(folder, format_args!("not a result; inspect {} instead", heights.display())));
     }
     let result = ResultFolder::read(folder)?;
@@ -153,7 +153,8 @@ fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
             Err(CliError::input(format_args!("{message}; the file has the channels {}", text::names(&channels))))
         }
         Err(error) => Err(error),
-        Ok((mut record, _)) if args.json => {
+        Ok((mut record, note)) if args.json => {
+            tell(&note);
             let row = |ChannelInfo { name, is_height }| ChannelRow { name, is_height };
             record.channels = if several { channels.into_iter().map(row).collect() } else { Vec::new() };
             Ok(to_json(&record))
@@ -200,10 +201,18 @@ fn inspect_waves(args: &InspectArgs) -> Result<String, CliError> {
     draw(args, &heights, &record)?;
     let note = if args.cell.is_none() { ASSUMED } else { "" };
     Ok(if args.json {
+        tell(note);
         to_json(&record)
     } else {
         note.to_owned() + &text::heights(&record) + &written(args.out.as_deref())
     })
+}
+
+/// Prints a note beside JSON, on standard error.
+fn tell(note: &str) {
+    if !note.is_empty() {
+        terminal::tell(note.trim_end());
+    }
 }
 
 /// Writes the pictures, if the arguments ask for them.

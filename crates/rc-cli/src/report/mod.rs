@@ -22,6 +22,7 @@ use std::path::Path;
 
 use self::args::ReportArgs;
 use crate::error::CliError;
+use crate::files::result::SUMMARY_FILE;
 use crate::terminal;
 use rc_sweep::{TABLE_FILE, files, settings_in};
 
@@ -30,10 +31,20 @@ const PAGE_FILE: &str = "report.html";
 
 /// The page of what is in `folder`.
 fn html(folder: &Path) -> Result<String, CliError> {
-    if !folder.join(TABLE_FILE).is_file() {
-        return Ok(document::html(&contact::page(folder)?));
+    if !folder.is_dir() {
+        return Err(CliError::in_file(folder, "no such folder; give the --out folder of a solve or a sweep"));
     }
     let settings = settings_in(folder);
+    if !folder.join(TABLE_FILE).is_file() {
+        return match settings {
+            Some(_) => Err(CliError::in_file(
+                folder,
+                format_args!("this sweep has no {TABLE_FILE} yet; finish it with --resume"),
+            )),
+            None if folder.join(SUMMARY_FILE).exists() => Ok(document::html(&contact::page(folder)?)),
+            None => Err(CliError::in_file(folder, "not a result; give the --out folder of a solve or a sweep")),
+        };
+    }
     match settings.as_ref() {
         Some(settings) if !settings["ensemble"].is_null() => Ok(document::html(&mean::page(folder, settings)?)),
         settings => Ok(document::html(&curves::page(folder, settings)?)),
@@ -48,9 +59,6 @@ pub(crate) fn run(args: &ReportArgs) -> Result<(), CliError> {
     let target = args.out.clone().unwrap_or_else(|| args.folder.join(PAGE_FILE));
     if target.is_dir() {
         return Err(CliError::in_file(&target, format_args!("is a folder; give --out FILE, as {PAGE_FILE}")));
-    }
-    if !args.folder.is_dir() {
-        return Err(CliError::in_file(&args.folder, "no such folder; give the --out folder of a solve or a sweep"));
     }
     let page = html(&args.folder)?;
     files::check_folder(target.parent().unwrap_or(Path::new("")))?;

@@ -18,7 +18,7 @@ use super::map_file::MapFile;
 use super::{flow_files, shared_fields};
 use crate::error::CliError;
 use crate::export::xarray;
-use crate::files::result::PLASTIC_GAP_FILE;
+use crate::files::result::{PLASTIC_GAP_FILE, SUMMARY_FILE};
 use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
@@ -139,7 +139,7 @@ impl ResultFiles<'_> {
             staged.add(WAVES_FILE, |path| spectrum::write(path, waves.coefficients()))?;
         }
         staged.add_text("scene.toml", &self.scene())?;
-        staged.add_text("summary.json", &summary.to_json())?;
+        staged.add_text(SUMMARY_FILE, &summary.to_json())?;
         staged.commit()
     }
 }

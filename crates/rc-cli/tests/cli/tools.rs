@@ -101,6 +101,9 @@ fn shells_and_man_know_every_command() {
         assert_solved(&output);
         let script = text(&output.stdout);
         assert!(script.contains("--low-pass") || script.contains("low-pass"), "{shell}: no flag of rc surface");
+        // Flags that a command refuses are hidden there.
+        let [limits, errors] = ["time-limit", "area-error"].map(|flag| script.matches(flag).count());
+        assert!(errors > 0 && limits > errors, "{shell}: --time-limit {limits}, --area-error {errors}");
     }
     assert_solved(&place.run(&["man", "--out", "man"]));
     let names = place.names("man");
