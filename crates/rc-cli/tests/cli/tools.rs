@@ -21,6 +21,15 @@ fn a_surface_is_converted_without_loss() {
 }
 
 #[test]
+fn inspect_knows_a_result_in_the_current_folder() {
+    let place = Place::new();
+    assert_solved(&place.run(&small("1e5", &["--out", "."])));
+    let [folder, file] = [".", "summary.json"].map(|path| place.run(&["inspect", path]));
+    assert_solved(&file);
+    assert_eq!(file.stdout, folder.stdout);
+}
+
+#[test]
 fn inspect_measures_what_surface_made() {
     let place = Place::new();
     let surface =

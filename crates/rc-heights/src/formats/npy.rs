@@ -8,6 +8,7 @@ use npyz::{DType, Deserialize, NpyFile, NpyHeader, Order, TypeChar, WriterBuilde
 use rc_core::{Field, Grid};
 
 use super::field::{field, transposed};
+use super::fields::shown_as_line;
 use crate::{Format, FormatError, ReadError};
 
 /// Maximum length of a header that is read.
@@ -47,7 +48,8 @@ pub fn read_from(mut file: impl Read, bytes: u64) -> Result<Field, FormatError> 
             return Err(header("length", &length, "the length of the header of a 2-D array, at most 4096"));
         }
     }
-    let invalid = |cause: io::Error| FormatError::Container { format: Format::Npy, reason: cause.to_string() };
+    let invalid =
+        |cause: io::Error| FormatError::Container { format: Format::Npy, reason: shown_as_line(&cause.to_string()) };
     let mut file = io::Cursor::new(start).chain(file);
     let header = NpyHeader::from_reader(&mut file).map_err(invalid)?;
     let grid = grid_of(&header)?;

@@ -6,13 +6,17 @@ use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 use rc_core::Grid;
 
 use super::field::field;
+use super::fields::shown_as_line;
 use crate::{Format, FormatError, HeightMap, Unit};
 
 /// Maximum number of bytes that deflate makes of one byte. Claims beyond that are false.
 const MOST_INFLATION: u64 = 1032;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
-    let invalid = |cause: png::DecodingError| FormatError::Container { format: Format::Png, reason: cause.to_string() };
+    let invalid = |cause: png::DecodingError| FormatError::Container {
+        format: Format::Png,
+        reason: shown_as_line(&cause.to_string()),
+    };
     // Rows are decoded one by one. The total size of the image is checked below.
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 64 << 20 });
     decoder.set_transformations(Transformations::IDENTITY);
