@@ -104,7 +104,9 @@ fn counts(all: &[Behind]) -> [usize; 3] {
 pub(super) fn count(results: &Results<'_>) -> String {
     let [n, slower, close] = counts(&comparisons(results));
     format!(
-        "In {slower} of {n} comparisons (one error, one problem, one way to read the peers' results), the fastest peer is faster than rc. In {close} more it takes less than twice our time.\n"
+        "[Benchmarks](docs/benchmarks.md#where-rc-is-not-ahead) has {n} comparisons: for these and more errors, with settings \
+         chosen by hindsight, and on equal meshes. In {slower} of them, the fastest peer is faster than rc. In {close} more, it \
+         takes less than twice our time.\n"
     )
 }
 
