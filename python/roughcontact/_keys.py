@@ -8,7 +8,7 @@ from typing import Any, Literal, Union
 
 import numpy as np
 
-#: Elements per side: a number, ``(nx, ny)``, or text as ``"512x256"``.
+#: Elements per side: a number, ``(nx, ny)``, or text such as ``"512x256"``.
 Grid = Union[int, tuple[int, int], str]
 #: What is beyond the heights.
 Boundary = Literal["periodic", "free"]

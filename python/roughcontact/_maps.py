@@ -135,7 +135,7 @@ def _sides_of(shape: tuple[int, ...], known: Sides | None, cell: float | None, c
     if known is not None:
         for name, extent, side, own in zip(("cell", "cell_y"), ("wide", "high"), given, known, strict=True):
             if side is not None and abs(side / own - 1.0) > _SAME_LENGTH:
-                raise ValueError(f"heights: the map is {own:g} m {extent}, {name} says {side:g} m; omit {name}")
+                raise ValueError(f"heights: the map is {own:g} m {extent}, but {name} says {side:g} m; omit {name}")
         return known
     side, side_y = given
     if side is None:
@@ -183,7 +183,7 @@ def read(
     Parameters
     ----------
     path : path
-        Text, ``.npy``, ``.h5``, ``.nc``, ``.mat``, 16-bit ``.png`` or ``.tif``, or a file of an instrument or of Gwyddion.
+        Text, ``.npy``, ``.h5``, ``.nc``, ``.mat``, 16-bit ``.png`` or ``.tif``, or a file from an instrument or from Gwyddion.
     unit : {"m", "cm", "mm", "um", "nm", "angstrom", "pm"}, optional
         Unit of the lengths of a file that names none. Default: m.
     height_scale : float, optional
@@ -220,7 +220,7 @@ def prepare(
 ) -> HeightMap:
     """Treat a measured map, as ``rc surface`` does, in the order of the parameters.
 
-    A measured map mostly needs ``crop="square", fill="laplace", level="plane", periodic="mirror"``.
+    Most measured maps need ``crop="square", fill="laplace", level="plane", periodic="mirror"``.
 
     Parameters
     ----------
@@ -230,7 +230,7 @@ def prepare(
         Sides (m) along x and y, where the map does not know them. A map that has as many points along x as along y needs no
         ``cell_y``; any other does.
     crop : str, optional
-        The part that is kept: ``"square"``, or points as ``"512"``, ``"512x256"``, ``"512x256+100+50"``.
+        The part that is kept: ``"square"``, or numbers of points such as ``"512"``, ``"512x256"``, ``"512x256+100+50"``.
     flip : str or sequence of str, optional
         Axes that are mirrored, ``"x"``, ``"y"`` or ``"z"``. Several are ``"x,y"`` or ``("x", "y")``.
     fill : {"laplace", "nearest", "lowest"}, optional
@@ -240,7 +240,7 @@ def prepare(
     periodic : {"mirror", "window", "as-is"}, optional
         How opposite borders are made to meet. ``mirror`` doubles the sides.
     taper : float, optional
-        Part of a side that ``window`` fades at each of its two ends. Default: 0.1.
+        Fraction of a side that ``window`` fades at each of its two ends. Default: 0.1.
     low_pass : float, optional
         Gaussian filter. Waves of this length (m) keep half of their height.
     resample : int, (int, int) or str, optional

@@ -19,7 +19,7 @@ class Certificate(NamedTuple):
     complementarity_error: float
     #: max(-g) / H.
     penetration_error: float
-    #: Deviation from the given load: of the mean pressure, relative to it, or of the penetration, divided by H.
+    #: |mean p - σ0| / σ0 for a given mean pressure σ0; |Δ - Δ0| / H for a given penetration Δ0.
     load_error: float
     #: What ``energy_error`` was to reach, or None.
     energy_tolerance: float | None

@@ -71,8 +71,8 @@ class Result:
     rms_pressure: float
     #: Rms pressure (Pa), best estimate.
     rms_pressure_corrected: float
-    #: Estimated error of ``rms_pressure_corrected`` (Pa). ``None`` where contact reaches a free border: the rms of the
-    #: singular pressure has no limit.
+    #: Estimated error of ``rms_pressure_corrected`` (Pa). ``None`` where contact reaches a free border, because the
+    #: rms of the singular pressure has no limit. ``None`` in full contact that was solved on one grid.
     rms_pressure_error: float | None
     #: Maximum pressure (Pa).
     max_pressure: float
@@ -82,7 +82,7 @@ class Result:
     mean_gap_error: float
     #: dσ0/dΔ (Pa/m); None in full contact.
     contact_stiffness: float | None
-    #: Electrical or thermal conductance per nominal area and conductivity (1/m); None in full contact.
+    #: Electrical or thermal conductance per nominal area and conductivity (1/m); None in full contact and for a layer.
     contact_conductance: float | None
     #: Elastic energy of the cell (J).
     elastic_energy: float
@@ -134,7 +134,7 @@ class Result:
 
     @property
     def cells(self) -> dict[str, Any]:
-        """The summary as a row of a sweep's table, by column. Of ``leakage`` it has permeances, their errors, and ``percolates``."""
+        """The summary as a row of a sweep's table, by column. From ``leakage`` it takes the permeances, their errors and ``percolates``."""
         cells: dict[str, Any] = json.loads(_core.cells(self._source.summary_json(), self.scene))
         return cells
 

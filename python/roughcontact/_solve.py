@@ -69,7 +69,7 @@ def solve(
     progress: ProgressOption = False,
     check: bool = False,
 ) -> Result:
-    """Solve one contact problem. The numbers are those of ``rc solve``, bit by bit.
+    """Solve one contact problem. The numbers are those of ``rc solve``, bit for bit.
 
     Parameters
     ----------
@@ -129,9 +129,9 @@ def solve(
     threads : int, optional
         Worker threads of this call. Results do not depend on it. Default: all cores.
     memory_limit : int or str, optional
-        Maximum memory, in bytes or as ``"2GB"``. What is estimated to need more is refused.
+        Maximum memory, in bytes, or as text such as ``"2GB"``. What is estimated to need more is refused.
     time_limit : float or str, optional
-        Maximum time, in seconds or as ``"5min"``. A solve that takes longer is not converged.
+        Maximum time, in seconds, or as text such as ``"5min"``. A solve that takes longer is not converged.
     progress : bool or callable, default False
         True draws a bar, if tqdm is installed. A function is called with :class:`Progress`.
     check : bool, default False

@@ -35,7 +35,7 @@ class Source(Protocol):
 
 
 class Stored:
-    """The files of a result, byte by byte, as a pickle holds them.
+    """The files of a result, byte for byte, as a pickle holds them.
 
     Beside them are the fields of which the files hold only averages, and the spots, which do not follow from the files.
     """

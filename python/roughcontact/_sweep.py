@@ -24,7 +24,7 @@ from roughcontact._table import Table
 
 #: Loads one by one, or text as on the command line: ``"1e4:1e6:8"`` (geometric), ``"1e-6:3e-5:8:linear"``.
 Loads = Union[Sequence[float], NDArray[np.float64], str]
-#: Seeds one by one, or text as ``"1..7"`` (both included).
+#: Seeds one by one, or text such as ``"1..7"`` (both included).
 Seeds = Union[Iterable[int], str]
 
 #: Arguments that are no keys of a scene.
@@ -126,7 +126,7 @@ def sweep(
     ValueError
         For input that cannot be used. For a load that a surface cannot carry, it is raised after all other rows are solved.
     RuntimeError
-        When workers of an executor end three times without a finished row.
+        When workers of an executor end three times without a finished row, or when an executor breaks that cannot be made again.
     """
     given = locals()
     keys = plain({name: value for name, value in given.items() if name not in _OPTIONS})
@@ -326,7 +326,9 @@ class _Collected:
             index = min(self._refused)
             message = f"{self._planned.describe(index)}: {self._refused[index]}"
             if len(table):
-                message += f"; {len(self._refused)} rows cannot be solved, the other {len(table)} are in the attribute table of this error"
+                n = len(self._refused)
+                rows = "1 row" if n == 1 else f"{n} rows"
+                message += f"; {rows} could not be solved, and the attribute table of this error has the other {len(table)}"
             error = ValueError(message)
             error.table = table  # type: ignore[attr-defined]
             raise error

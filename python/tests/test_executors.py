@@ -98,7 +98,7 @@ def test_either_program_goes_on_with_the_rows_of_the_other(swept, command, tmp_p
     # What is there already is read, not solved.
     again = rc.sweep(**KEYS, out=tmp_path / "rc", resume=True, executor=Refusing())
     assert again["penetration"].tolist() == table["penetration"].tolist()
-    with pytest.raises(ValueError, match="holds a sweep already; resume=True goes on with it, or give another out"):
+    with pytest.raises(ValueError, match="holds a sweep already; continue it with resume=True, or give another out"):
         rc.sweep(**KEYS, out=tmp_path / "rc")
     with pytest.raises(ValueError, match="holds another sweep: .*loads"):
         rc.sweep(**{**KEYS, "pressures": [1e5]}, out=tmp_path / "rc", resume=True)
@@ -241,7 +241,7 @@ def test_a_load_that_cannot_be_carried_costs_its_row_alone(tmp_path):
     loads = {"penetrations": [1e-6, 1.0], "waves": 8, "grid": 64}
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         for executor in (None, pool):
-            with pytest.raises(ValueError, match=r"^row 2 \(seed 1, penetration 1e0\): .*; 1 rows cannot be solved, the other 1") as refused:
+            with pytest.raises(ValueError, match=r"^row 2 \(seed 1, penetration 1e0\): .*; 1 row could not be solved, and .* has the other 1") as refused:
                 rc.sweep(**loads, executor=executor)
             assert refused.value.table["control_value"].tolist() == [1e-6]
     with pytest.raises(ValueError, match="^row 1 "):

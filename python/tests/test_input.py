@@ -59,7 +59,7 @@ def test_a_map_brings_its_size_along_and_is_not_contradicted(heights, result):
     keys = {**CONTACT}
     del keys["cell"]
     assert rc.solve(sized, **keys).pressure.tobytes() == result.pressure.tobytes()
-    with pytest.raises(ValueError, match="the map is 10 mm wide, cell says 20 mm"):
+    with pytest.raises(ValueError, match="the map is 10 mm wide, but cell says 20 mm"):
         rc.solve(sized, **{**CONTACT, "cell": 0.02})
 
 
@@ -224,7 +224,7 @@ def test_sides_of_a_map_are_two_lengths_and_not_contradicted(heights):
             rc.prepare(part, level="plane", **keys)
     assert rc.prepare(part, cell=0.01, cell_y=0.0075).sides == (0.01, 0.0075)
     sized = rc.HeightMap(part, (0.01, 0.0075))
-    with pytest.raises(ValueError, match="^heights: the map is 0.0075 m high, cell_y says 0.01 m; omit cell_y"):
+    with pytest.raises(ValueError, match="^heights: the map is 0.0075 m high, but cell_y says 0.01 m; omit cell_y"):
         rc.prepare(sized, cell=0.01, cell_y=0.01)
     assert rc.prepare(sized, cell=0.01).sides == sized.sides
 

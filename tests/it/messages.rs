@@ -18,7 +18,7 @@ const MOST_WORDS: usize = 80;
 const CERTAIN: [&str; 5] = ["expect", "assert", "assert_eq", "debug_assert", "unreachable"];
 
 /// The snapshots of the crates whose sentences users read.
-const SNAPSHOTS: [&str; 11] = [
+const SNAPSHOTS: [&str; 12] = [
     "sentences-rc-cli",
     "sentences-rc-cli-report",
     "sentences-rc-core",
@@ -27,6 +27,7 @@ const SNAPSHOTS: [&str; 11] = [
     "sentences-rc-kernel",
     "sentences-rc-leakage",
     "sentences-rc-plot",
+    "sentences-rc-py",
     "sentences-rc-solver",
     "sentences-rc-sweep",
     "sentences-rc-theory",

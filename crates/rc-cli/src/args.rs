@@ -32,7 +32,7 @@ Exit codes: 0 solved, 2 bad input, 3 not converged, 4 could not write, 130 inter
 pub(crate) enum Command {
     /// Solve one contact problem; without arguments, the paper's surface into rc-result/
     Solve(SolveArgs),
-    /// Solve a list of loads on a list of surfaces; resumes after an interruption
+    /// Solve a list of loads on a list of surfaces; --resume continues after an interruption
     Sweep(Box<SweepArgs>),
     /// Generate, convert or treat a surface
     Surface(SurfaceArgs),

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use clap::error::ErrorKind;
 use rc_sweep::files::FileError;
 use rc_sweep::memory::{Bound, MemoryError};
 use thiserror::Error;
@@ -95,7 +96,7 @@ impl From<MemoryError> for CliError {
                 "memory_limit: {what} needs about {needed}, more than the limit of {available}{remedy}"
             )),
             Bound::Machine => Self::input(format_args!(
-                "grid: {what} needs about {needed} of memory, this machine has {available}{remedy}"
+                "grid: {what} needs about {needed} of memory, but this machine has {available}{remedy}"
             )),
         }
     }
@@ -107,7 +108,21 @@ impl From<&clap::Error> for CliError {
         let text = error.to_string();
         let before_usage = text.split("\n\nUsage:").next().unwrap_or_default();
         let before_usage = before_usage.split("\n\nFor more information").next().unwrap_or_default();
-        Self::input(in_words(before_usage.trim_start_matches("error: ")))
+        let message = in_words(before_usage.trim_start_matches("error: "));
+        let tip = message.contains("tip: ");
+        Self::input(match error.kind() {
+            ErrorKind::MissingRequiredArgument => {
+                let missing: Vec<&str> = message.lines().skip(1).map(str::trim).collect();
+                format!("required arguments are missing: {}", missing.join(" "))
+            }
+            ErrorKind::InvalidSubcommand if !tip => format!("{message}; rc --help lists the commands"),
+            // A flag that does not exist is hardly meant as a value.
+            ErrorKind::UnknownArgument if message.contains("to pass '") => {
+                let first = message.lines().next().unwrap_or_default();
+                format!("{first}; --help lists the flags")
+            }
+            _ => message,
+        })
     }
 }
 
@@ -117,8 +132,8 @@ fn in_words(message: &str) -> String {
         ("invalid digit found in string", "must be a whole number, not negative"),
         ("cannot parse integer from empty string", "must be a whole number"),
         ("number too large to fit in target type", "the number is too large"),
-        ("invalid float literal", "must be a number, as 4.5e5"),
-        ("cannot parse float from empty string", "must be a number, as 4.5e5"),
+        ("invalid float literal", "must be a number, such as 4.5e5"),
+        ("cannot parse float from empty string", "must be a number, such as 4.5e5"),
     ];
     WORDS.iter().fold(message.to_owned(), |text, (said, meant)| text.replace(said, meant))
 }

@@ -22,7 +22,7 @@ pub(crate) struct CompletionsArgs {
 const COMPLETIONS_HELP: &str = "\
 For the current user, in a new shell:
   bash  rc completions bash > ~/.local/share/bash-completion/completions/rc
-  zsh   rc completions zsh > a folder of $fpath, as the file _rc
+  zsh   rc completions zsh > ~/.zfunc/_rc    (or another folder of $fpath)
   fish  rc completions fish > ~/.config/fish/completions/rc.fish";
 
 /// Arguments of `rc man`.

@@ -25,7 +25,7 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
     let metres = |value| engineering(value, "m");
     let method = s.method_reason.as_ref().unwrap_or(&s.method).clone();
     let cell = format!("{} with {nx} x {ny} elements, E* = {}", cell(sides), pascals(e_star));
-    let area = with_error(100.0 * s.area_fraction, 100.0 * s.area_fraction_error);
+    let area = percent(s.area_fraction, s.area_fraction_error);
     let counted = digits(100.0 * s.area_fraction_cells, 4);
     let mean_pressure = format!("{} ({} E*)", pascals(s.mean_pressure), digits(s.mean_pressure / e_star, 4));
     let penetration = penetration(s);
@@ -33,7 +33,7 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
         ("method", method),
         ("cell", cell),
         ("surface", surface_line(s)),
-        ("contact area", format!("({area}) % of the nominal area, {counted} % by counting")),
+        ("contact area", format!("{area} of the nominal area, {counted} % by counting")),
         ("mean pressure", mean_pressure),
         ("rms, max pressure", format!("{}, {}", pascals(s.rms_pressure), pascals(s.max_pressure))),
         ("penetration", penetration),
@@ -70,8 +70,8 @@ fn counts(evaluated: usize, proven: usize, n: usize) -> String {
 pub(crate) fn plastic(s: &Summary) -> Option<String> {
     let (fraction, error) = (s.plastic_area_fraction?, s.plastic_area_fraction_error?);
     Some(format!(
-        "({}) % of the nominal area, at the hardness of {}",
-        with_error(100.0 * fraction, 100.0 * error),
+        "{} of the nominal area, at the hardness of {}",
+        percent(fraction, error),
         engineering(s.hardness?, "Pa")
     ))
 }
@@ -135,11 +135,17 @@ fn levels(n: usize) -> &'static str {
     if n == 1 { "level" } else { "levels" }
 }
 
+/// A fraction with its error in percent, for instance `(7.18 ± 0.01) %`.
+fn percent(fraction: f64, error: f64) -> String {
+    let text = with_error(100.0 * fraction, 100.0 * error);
+    if text.contains('±') { format!("({text}) %") } else { format!("{text} %") }
+}
+
 /// A value with its error, for instance `7.183 ± 0.008`.
 ///
-/// Both end with the last digit that the error leaves certain.
+/// Both end with the last digit that the error leaves certain. An error of the size of rounding is omitted.
 pub(crate) fn with_error(value: f64, error: f64) -> String {
-    if error > 0.0 && error.is_finite() {
+    if error > 1e-12 * value.abs() && error.is_finite() {
         let decimals = (-error.log10().floor()).clamp(0.0, 12.0) as usize;
         format!("{value:.decimals$} ± {error:.decimals$}")
     } else {

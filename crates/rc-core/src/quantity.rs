@@ -58,6 +58,12 @@ pub fn digits(value: f64, n: usize) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
+/// Text of a number of things, such as `1 row` or `3 rows`.
+#[must_use]
+pub fn count(n: usize, thing: &str) -> String {
+    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
+}
+
 /// Text of `value` for pictures, with four significant digits and a true minus sign.
 #[must_use]
 pub fn label(value: f64) -> String {

@@ -4,6 +4,7 @@
 
 use std::path::PathBuf;
 
+use rc_core::quantity::count;
 use rc_core::{Grid, GridError};
 use thiserror::Error;
 
@@ -28,9 +29,9 @@ pub enum FormatError {
     Unreadable(String),
     /// Neither the first bytes nor the extension determine the format.
     #[error(
-        "its format is not known, neither from its first bytes nor from its name; a height map is a text (.csv, .txt, .dat, .asc, .xyz), an array (.npy, \
-         .mat, .h5, .nc), a file of a program (.gwy, .gsf, .grd, .ibw, .sdf, .x3p) or of an instrument (.sur, .spm, .opd, .dat of \
-         MetroPro, .al3d, .plu, .plux, .vk4), a .png or a .tif file"
+        "its format is not known, neither from its first bytes nor from its name; a height map is a text file (.csv, .txt, .dat, .asc, .xyz), an array (.npy, \
+         .mat, .h5, .nc), a file from a program (.gwy, .gsf, .grd, .ibw, .sdf, .x3p) or from an instrument (.sur, .spm, .opd, .dat of \
+         MetroPro, .al3d, .plu, .plux, .vk4), or an image (.png, .tif)"
     )]
     Unknown,
     /// The file is an archive that is not a height map.
@@ -39,8 +40,8 @@ pub enum FormatError {
         /// Kind of the archive, and what to do.
         what: String,
     },
-    /// The name is that of a text, but the bytes are not.
-    #[error("it contains zero bytes, so it is not a text; save it as UTF-8, or UTF-16 with a byte-order mark")]
+    /// The name is that of a text file, but the bytes are not.
+    #[error("it contains NUL bytes, so it is not a text file; save it as UTF-8, or UTF-16 with a byte-order mark")]
     ZeroBytes,
     /// The file is compressed with gzip and cannot be decompressed.
     #[error("cannot be unpacked by gzip: {0}; the file is damaged, truncated or too large")]
@@ -93,7 +94,7 @@ pub enum FormatError {
     },
     /// The file has fewer bytes than its header requires.
     #[error(
-        "shorter than its header says: {grid} heights need {needed} bytes, {found} are there; the file is truncated"
+        "shorter than its header says: {grid} heights need {needed} bytes, but the file has {found}; it is truncated"
     )]
     CutShort {
         /// Number of points along x and y.
@@ -105,7 +106,7 @@ pub enum FormatError {
     },
     /// The file has more bytes than its header requires.
     #[error(
-        "longer than its header says: {grid} heights need {needed} bytes, {found} are there; the header is of another map"
+        "longer than its header says: {grid} heights need {needed} bytes, but the file has {found}; the header is that of another map"
     )]
     Surplus {
         /// Number of points along x and y.
@@ -121,6 +122,12 @@ pub enum FormatError {
         /// The format.
         format: Format,
     },
+    /// A text file has no numbers.
+    #[error("it has no numbers; {expected}")]
+    NoNumbers {
+        /// Description of a valid file.
+        expected: &'static str,
+    },
     /// A word of a text is not a number.
     #[error("line {line}, value {value}: '{text}' is not a number")]
     NoNumber {
@@ -132,7 +139,7 @@ pub enum FormatError {
         text: String,
     },
     /// A line of a text has a wrong number of values.
-    #[error("line {line} has {found} values, {expected}")]
+    #[error("line {line} has {}, {expected}", count(*found, "value"))]
     Columns {
         /// Number of the line, from 1.
         line: usize,

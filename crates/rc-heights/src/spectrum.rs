@@ -11,7 +11,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Read as _, Write as _};
 use std::path::Path;
 
-use crate::formats::{data_lines, decoded, hdf5_table, number, shown, words};
+use crate::formats::{data_lines, decoded, hdf5_table, is_text, number, shown, words};
 use crate::{FormatError, ReadError};
 
 /// The first bytes of an HDF5 file.
@@ -74,7 +74,15 @@ fn parse_hdf5(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
 ///
 /// Empty lines and lines that start with `#` are ignored.
 fn parse_text(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
-    data_lines(&decoded(bytes), 1).map(|(line, row)| coefficient(line, row)).collect()
+    if !is_text(bytes) {
+        return Err(FormatError::ZeroBytes);
+    }
+    let waves: Vec<Coefficient> =
+        data_lines(&decoded(bytes), 1).map(|(line, row)| coefficient(line, row)).collect::<Result<_, _>>()?;
+    if waves.is_empty() {
+        return Err(FormatError::NoNumbers { expected: "give a line kx ky Re Im for each wave" });
+    }
+    Ok(waves)
 }
 
 fn coefficient(line: usize, row: &str) -> Result<Coefficient, FormatError> {
@@ -88,7 +96,7 @@ fn coefficient(line: usize, row: &str) -> Result<Coefficient, FormatError> {
         found += 1;
     }
     if found != values.len() {
-        let expected = "where kx, ky, Re and Im of a wave belong".to_owned();
+        let expected = "but a wave has four: kx, ky, Re and Im".to_owned();
         return Err(FormatError::Columns { line, found, expected });
     }
     let [kx, ky, re, im] = values;
@@ -175,14 +183,15 @@ mod tests {
 
     #[test]
     fn bad_lines_are_refused_with_their_place() {
-        let cases: [(&[u8], &str); 9] = [
-            (b"1 2 3\n", "line 1 has 3 values, where kx, ky, Re and Im of a wave belong"),
+        let cases: [(&[u8], &str); 10] = [
+            (b"1 2 3\n", "line 1 has 3 values, but a wave has four: kx, ky, Re and Im"),
             (b"1 2 3 4\n1 2 3 4 5\n", "line 2 has 5 values"),
             (b"1 2 3 4\n# end\n1 2 x 4\n", "line 3, value 3: 'x'"),
             (b"1.5 2 3 4\n", "line 1: wave number 1.5 is not an integer"),
             (b"1 nan 3 4\n", "line 1: wave number NaN is not an integer"),
             (b"1 1e300 3 4\n", "line 1: wave number 1"),
-            (b"\x93NUMPY\x01\x00v\x00{'descr': '<f8', }\n", "line 1"),
+            (b"\x93NUMPY\x01\x00v\x00{'descr': '<f8', }\n", "not a text file"),
+            (b"# no wave\n", "it has no numbers; give a line kx ky Re Im for each wave"),
             (b"1,2,,4\n", "line 1, value 3"),
             (b"\x89HDF\r\n\x1a\n\0\0", "not a valid HDF5 file"),
         ];

@@ -131,7 +131,7 @@ pub enum LengthUnitError {
     #[error("height_scale: the file gives its heights in metres; omit height_scale")]
     HeightsInMetres,
     /// A unit is given for levels of grey on a map without a size.
-    #[error("unit: levels of grey have no unit, height_scale (m) gives their height; omit unit")]
+    #[error("unit: levels of grey have no unit, and height_scale (m) gives their height; omit unit")]
     UnitOfLevels,
     /// A unit is given for values that are not lengths, on a map without a size.
     #[error(

@@ -20,7 +20,7 @@ pub enum LeakageError {
     /// The bounds of the permeance, or the flow through sections, still differ after the most iterations.
     #[error(
         "the flow along {axis} on {grid} elements did not converge in {iterations} iterations: its bounds differ by {error:.1e} of the \
-         permeance, and the flow through sections by {conservation:.1e}; take another grid or load"
+         permeance, and the flow through sections by {conservation:.1e}; try another grid or load"
     )]
     NotConverged {
         /// Direction of the flow.

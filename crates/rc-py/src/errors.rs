@@ -56,31 +56,14 @@ fn in_keywords(message: &str) -> String {
     text
 }
 
-/// The message of the reader of keys without the names of Rust types.
-///
-/// An example of `message` is `threads: invalid value: integer -1, expected usize`.
+/// The message of a wrong value in the words of Python.
 fn in_words(message: &str) -> String {
-    let Some((key, said)) = message.split_once(": ") else { return message.to_owned() };
-    let Some((found, expected)) = said.split_once(", expected ") else { return message.to_owned() };
-    if let Some(name) = found.strip_prefix("unknown variant ") {
-        // The name of a kernel that is a function appears in results only.
-        let names = expected.split('`').skip(1).step_by(2).filter(|name| *name != "own");
-        let names: Vec<String> = names.map(|name| format!("'{name}'")).collect();
-        return format!("{key}: must be {}, not {}", names.join(" or "), name.replace('`', "'"));
-    }
-    let value = found.trim_start_matches("invalid type: ").trim_start_matches("invalid value: ");
-    let kinds = ["integer ", "floating point ", "boolean ", "string "];
-    let value = kinds.iter().fold(value, |value, kind| value.trim_start_matches(kind)).replace('`', "");
-    let value = match &*value {
-        "true" => "True",
-        "false" => "False",
-        other => other,
-    };
-    let expected = match expected {
-        "usize" | "u64" | "u32" => "a whole number of at least 0",
-        "f64" => "a number",
-        "a string" => "text",
-        other => other,
-    };
-    format!("{key}: must be {expected}, not {value}")
+    const WORDS: [(&str, &str); 4] = [
+        ("must be a number without quotes,", "must be a number,"),
+        ("must be text in quotes,", "must be text,"),
+        ("must be true or false,", "must be True or False,"),
+        ("not true", "not True"),
+    ];
+    let text = WORDS.iter().fold(message.to_owned(), |text, (said, here)| text.replace(said, here));
+    text.strip_suffix("not false").map_or_else(|| text.clone(), |start| format!("{start}not False"))
 }

@@ -6,6 +6,7 @@ use std::ffi::CString;
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
+use rc_core::quantity::digits;
 use rc_core::{Grid, Kernel, Symbol, Units};
 
 use crate::errors::bad_input;
@@ -53,7 +54,16 @@ impl OwnKernel {
             let number = |wave: &[i64; 2]| wave[axis] as f64 * waves.per_wave[axis];
             own.iter().map(number).chain(mirrored.iter().map(|(_, wave)| number(wave))).collect::<Vec<f64>>()
         });
+        let wave_numbers: Vec<[f64; 2]> = kx.iter().copied().zip(ky.iter().copied()).map(Into::into).collect();
         let mut found = call(symbol, kx, ky)?;
+        if let Some((value, [kx, ky])) =
+            found.iter().zip(&wave_numbers).find(|(value, _)| !(**value > 0.0 && value.is_finite()))
+        {
+            let [value, kx, ky] = [*value, *kx, *ky].map(|x| digits(x, 4));
+            return Err(bad_input(format_args!(
+                "kernel: the function returned {value} m at kx = {kx}, ky = {ky} rad/m; it must be positive and finite"
+            )));
+        }
         // This is one metre per pascal in units of the libraries.
         let unit = units.length(1.0) / units.pressure(1.0);
         for value in &mut found {
@@ -120,9 +130,10 @@ impl OwnKernel {
             return Ok(());
         };
         let message = format!(
-            "kernel: the nearest of its short waves is that of a half-space with an E* of {:.4e} Pa, but e_star, with which the edges of \
-             contacts are located, is {e_star:.4e} Pa; give the E* of short waves, or correct the kernel",
-            e_star / nearest
+            "kernel: at short waves, the function is that of a half-space with an E* of {} Pa or further from e_star = {} Pa, which \
+             locates contact edges; give the E* of short waves, or correct the function",
+            digits(e_star / nearest, 5),
+            digits(e_star, 5)
         );
         let message = CString::new(message).map_err(bad_input)?;
         PyErr::warn(py, &py.get_type::<PyUserWarning>(), &message, STACK_LEVEL)

@@ -85,7 +85,11 @@ fn value_of(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Value>> {
             "pressure" | "penetration" | "seed" => "; roughcontact.sweep solves for several",
             _ => "",
         };
-        return Err(PyTypeError::new_err(format!("{key}: must be a number or text, not {kind}{instead}")));
+        let expected = match key {
+            "grid" | "output_grid" => "a whole number, a pair (nx, ny), or text such as '512x256'",
+            _ => "a number or text",
+        };
+        return Err(PyTypeError::new_err(format!("{key}: must be {expected}, not {kind}{instead}")));
     };
     Ok(Some(value))
 }

@@ -101,7 +101,7 @@ impl Prepared {
         let started = Instant::now();
         let Scene { surface, contact, run } = scene;
         if given.kernel.is_some() && contact.area_error.is_some() {
-            return Err(bad_input("area_error: a function for a kernel is asked on one grid; give grid instead"));
+            return Err(bad_input("area_error: a kernel function is evaluated on one grid only; give grid instead"));
         }
         let map = given.heights.as_ref().map(|heights| arrays::map_of(heights, given.sides)).transpose()?;
         let mut scene = match &map {

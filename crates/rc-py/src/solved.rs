@@ -254,7 +254,8 @@ impl Unfinished {
 impl Unfinished {
     /// Waits for the solution. It can be taken only once.
     fn wait(&self, py: Python<'_>) -> PyResult<Solved> {
-        let mut rest = self.rest.try_lock().map_err(|_| bad_input("the solution is waited for already"))?;
+        let mut rest =
+            self.rest.try_lock().map_err(|_| bad_input("another call is already waiting for the solution"))?;
         let parts = rest.wait(py)?.map_err(raised)?;
         let map = self.map.lock().unwrap_or_else(PoisonError::into_inner).take();
         Ok(Solved::new(parts, map, self.threads))

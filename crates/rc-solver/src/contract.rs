@@ -59,7 +59,7 @@ pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), Proble
             _ => {}
         }
         if again(kx, ky).to_bits() != value.to_bits() {
-            return fault(kx, ky, again(kx, ky), "the same each time it is asked");
+            return fault(kx, ky, again(kx, ky), "the same each time it is evaluated");
         }
         // On other grids the mirrored wave may not be a wave of the grid.
         let is_mirrored = || (symbol(ky, kx) - value).abs() <= MIRROR_ERROR * value;

@@ -103,8 +103,8 @@ impl fmt::Display for MethodReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let round = |percent: &f64| digits(*percent, 2);
         match self {
-            Self::AskedFor(method) => write!(f, "{method}: asked for"),
-            Self::BorderLevel => write!(f, "adaptive: a border level is asked for"),
+            Self::AskedFor(method) => write!(f, "{method}: as requested"),
+            Self::BorderLevel => write!(f, "adaptive: a border level was given"),
             Self::SmallContact { percent } => {
                 write!(f, "adaptive: the contact area was estimated as {} % before the solve", round(percent))
             }

@@ -87,7 +87,7 @@ impl Header {
     /// [`SweepError`] with the first difference.
     pub(crate) fn check_same(&self, there: &Self, folder: &Path) -> Result<(), SweepError> {
         let folder = folder.to_owned();
-        if let Some(difference) = settings::difference((&there.settings, "there"), (&self.settings, "in this one")) {
+        if let Some(difference) = settings::difference((&there.settings, "in the folder"), (&self.settings, "now")) {
             return Err(SweepError::OtherSettings { folder, difference });
         }
         if there.shape != self.shape {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use rc_core::quantity::count;
 use thiserror::Error;
 
 use crate::files::FileError;
@@ -18,7 +19,7 @@ pub enum SweepError {
     #[error(transparent)]
     File(#[from] FileError),
     /// A row could not be appended to the journal. The rows before it are stored.
-    #[error("cannot write {}: {cause}; {kept} rows before are kept", path.display())]
+    #[error("cannot write {}: {cause}; {} before it kept", path.display(), count(*kept, "row"))]
     Append {
         /// Path of the journal.
         path: PathBuf,
@@ -44,7 +45,7 @@ pub enum SweepError {
         cause: String,
     },
     /// A shard has no rows.
-    #[error("shard {shard} of a sweep of {rows} rows is empty")]
+    #[error("shard {shard} is empty, because the sweep has only {}", count(*rows, "row"))]
     EmptyShard {
         /// The shard.
         shard: Shard,
@@ -98,7 +99,7 @@ pub enum SweepError {
         name: String,
     },
     /// The folder does not contain a readable journal.
-    #[error("{}: no sweep of rc here ({JOURNAL_FILE} cannot be read: {cause})", folder.display())]
+    #[error("{}: not the folder of a sweep ({JOURNAL_FILE} cannot be read: {cause})", folder.display())]
     NoJournal {
         /// The folder.
         folder: PathBuf,
@@ -177,7 +178,7 @@ pub enum SweepError {
         first: PathBuf,
     },
     /// Two folders contain the same shard.
-    #[error("{}: is shard {shard}, as is {}", folder.display(), other.display())]
+    #[error("{}: is shard {shard}, and so is {}", folder.display(), other.display())]
     SameShard {
         /// The folder.
         folder: PathBuf,
@@ -187,7 +188,7 @@ pub enum SweepError {
         shard: Shard,
     },
     /// A shard to merge is not finished.
-    #[error("{}: {missing} rows of shard {shard} are missing", folder.display())]
+    #[error("{}: shard {shard} lacks {}", folder.display(), count(*missing, "row"))]
     MissingRows {
         /// The folder.
         folder: PathBuf,

@@ -223,7 +223,7 @@ mod tests {
             assert!(refused(header(8)).contains("another process"), "{}", refused(header(8)));
         }
         drop(journal);
-        assert!(refused(header(9)).contains("waves is 8 there and 9 in this one"), "{}", refused(header(9)));
+        assert!(refused(header(9)).contains("waves is 8 in the folder and 9 now"), "{}", refused(header(9)));
         let mut shard = header(8);
         shard.shard = Shard { index: 1, count: 2 };
         let message = refused(shard);

@@ -2,6 +2,7 @@
 //!
 //! The caller of a sweep provides this code.
 
+use rc_core::quantity::count;
 use thiserror::Error;
 
 use crate::content::Cells;
@@ -56,7 +57,7 @@ pub struct Workers {
 #[non_exhaustive]
 pub enum RunError<E> {
     /// Rows were refused. All other rows are solved.
-    #[error("{error} ({missing} rows cannot be solved, {kept} are kept)")]
+    #[error("{error}; {} could not be solved, {kept} kept", count(*missing, "row"))]
     Refused {
         /// Error of the first refused row.
         error: E,

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-/// The first setting that differs, such as `surfaces[0].surface.waves is 8 in one and 16 in two`.
+/// The first setting that differs, such as `waves of surface 1 is 8 in one and 16 in two`.
 ///
 /// Each value comes with words that say where it is, such as `in one`.
 pub(crate) fn difference(there: (&Value, &str), here: (&Value, &str)) -> Option<String> {
@@ -25,11 +25,19 @@ fn find_difference(path: &str, [there, here]: [&Value; 2], places: [&str; 2]) ->
             pairs.find_map(|(i, (a, b))| find_difference(&format!("{path}[{i}]"), [a, b], places))
         }
         (Value::Array(a), Value::Array(b)) => {
-            Some(format!("the number of {path} is {} {in_there} and {} {in_here}", a.len(), b.len()))
+            Some(format!("the number of {} is {} {in_there} and {} {in_here}", in_words(path), a.len(), b.len()))
         }
         (a, b) if a == b => None,
-        (a, b) => Some(format!("{path} is {a} {in_there} and {b} {in_here}")),
+        (a, b) => Some(format!("{} is {a} {in_there} and {b} {in_here}", in_words(path))),
     }
+}
+
+/// The name of a setting: `waves of surface 1` for `surfaces[0].surface.waves`.
+fn in_words(path: &str) -> String {
+    let of_surface = path.strip_prefix("surfaces[").and_then(|rest| rest.split_once("]."));
+    let Some((index, key)) = of_surface else { return path.to_owned() };
+    let name = if key == "map.crc32" { "map checksum" } else { key.rsplit('.').next().unwrap_or(key) };
+    index.parse::<usize>().map_or_else(|_| path.to_owned(), |i| format!("{name} of surface {}", i + 1))
 }
 
 #[cfg(test)]
@@ -44,10 +52,10 @@ mod tests {
         assert_eq!(difference((&there, "in one"), (&there, "in two")), None);
         for (change, expected) in [
             (json!({"version": "2"}), "version is \"1\" in one and \"2\" in two"),
-            (json!({"surfaces": [{"waves": 9, "loads": [1.0, 2.0]}]}), "surfaces[0].waves is 8 in one and 9 in two"),
+            (json!({"surfaces": [{"waves": 9, "loads": [1.0, 2.0]}]}), "waves of surface 1 is 8 in one and 9 in two"),
             (
                 json!({"surfaces": [{"waves": 8, "loads": [1.0]}]}),
-                "the number of surfaces[0].loads is 2 in one and 1 in two",
+                "the number of loads of surface 1 is 2 in one and 1 in two",
             ),
             (json!({"more": 1}), "more is null in one and 1 in two"),
         ] {

@@ -52,7 +52,7 @@ impl FromStr for Shard {
         let parts = text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
         match parts {
             Some((index, count)) if (1..=count).contains(&index) => Ok(Self { index, count }),
-            _ => Err(format!("a shard is i/n with i from 1 to n, as 2/8, not '{text}'")),
+            _ => Err(format!("a shard is i/n with i from 1 to n, such as 2/8, not '{text}'")),
         }
     }
 }

@@ -149,7 +149,7 @@ impl<'a> Crate<'a> {
             };
             let steps: Vec<String> = way.windows(2).map(step).collect();
             complaints.push(format!(
-                "{} files use each other in circles, as {}; move what both need to a file of its own",
+                "{} files use each other in circles, for example {}; move what both need to a file of its own",
                 together.len(),
                 steps.join(", ")
             ));

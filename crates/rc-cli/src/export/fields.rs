@@ -83,6 +83,6 @@ pub(super) struct Element {
 
 /// The elements in the file at `path`.
 pub(super) fn read_elements(path: &Path) -> Result<Vec<Element>, CliError> {
-    let fail = |cause: csv::Error| CliError::in_file(path, format_args!("not elements of rc solve: {cause}"));
+    let fail = |cause: csv::Error| CliError::in_file(path, format_args!("not an elements.csv of rc solve: {cause}"));
     csv::Reader::from_path(path).map_err(fail)?.deserialize().collect::<Result<_, _>>().map_err(fail)
 }

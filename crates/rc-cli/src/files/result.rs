@@ -34,6 +34,15 @@ pub struct ResultFolder {
     pub plastic_gap: Option<Field>,
 }
 
+/// Why `path` is not the folder of `what`.
+pub(crate) fn no_folder(path: &Path, what: &str) -> String {
+    if path.exists() {
+        "is a file; give the folder that it is in".to_owned()
+    } else {
+        format!("no such folder; give the --out folder of {what}")
+    }
+}
+
 impl ResultFolder {
     /// Reads a result folder.
     ///
@@ -41,7 +50,7 @@ impl ResultFolder {
     /// [`CliError::Input`] with the name of the file that is missing or wrong.
     pub fn read(folder: &Path) -> Result<Self, CliError> {
         if !folder.is_dir() {
-            return Err(CliError::in_file(folder, "no such folder; give the --out folder of a solve"));
+            return Err(CliError::in_file(folder, no_folder(folder, "a solve")));
         }
         let path = folder.join(SUMMARY_FILE);
         if !path.exists() {

@@ -23,7 +23,7 @@ pub(crate) struct InspectArgs {
     pub(crate) grid: Option<GridSpec>,
     /// Side λ of the cell, along x (m) [default: the file's; 0.01 if it has none]
     ///
-    /// Of a result, it is that of its scene.toml.
+    /// A result has its cell in scene.toml, and takes no --cell.
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) cell: Option<f64>,
     /// Side of the cell along y (m) [default: that in the file, or --cell]

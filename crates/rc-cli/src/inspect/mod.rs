@@ -8,6 +8,7 @@ mod pictures;
 
 use std::path::{Path, PathBuf};
 
+use rc_core::quantity::digits;
 use rc_core::{Field, PeriodicCell};
 use rc_fractal::moments_of_grid;
 use rc_heights::{ChannelInfo, HeightMap, ReadParams, Scales, npy};
@@ -52,7 +53,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
         Some(folder) => inspect_result(&folder, args.json)?,
         None if args.file.file_name().is_some_and(|name| name == "pressure.npy") => {
             let statistics = PressureStatistics::of(&finite(&args.file, npy::read(&args.file)?)?);
-            if args.json { to_json(&statistics) } else { text::pressure(&statistics) }
+            if args.json { to_json(&statistics) } else { text::pressure(&statistics, statistics.grid) }
         }
         None if args.spectrum => inspect_waves(args)?,
         None => inspect_heights(args)?,
@@ -106,11 +107,12 @@ fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
     }
     let result = ResultFolder::read(folder)?;
     let sides = result.sides();
+    let elements = result.summary.grid;
     let pressure = PressureStatistics::of(&finite(&folder.join("pressure.npy"), result.pressure)?);
     if json {
         return Ok(to_json(&ResultStatistics { summary: result.summary, pressure }));
     }
-    Ok(solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &text::pressure(&pressure))
+    Ok(solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &text::pressure(&pressure, elements))
 }
 
 /// A height map with its statistics.
@@ -126,7 +128,8 @@ impl Inspected {
     fn new(path: &Path, map: HeightMap, given: [Option<f64>; 2]) -> Result<Self, CliError> {
         heights::check_finite(path, &map.heights)?;
         if map.heights.max() <= map.heights.min() {
-            let message = format_args!("all heights are {:e}; a flat surface has no statistics", map.heights.max());
+            let message =
+                format_args!("all heights are {}; a flat surface has no statistics", digits(map.heights.max(), 6));
             return Err(CliError::in_file(path, message));
         }
         let [side, side_y] = heights::sides(path, map.sides, given)?;
@@ -231,8 +234,8 @@ const ELEMENTS_PER_WAVE: usize = 4;
 const ASSUMED: &str = "the file has no size, so a side of 0.01 m is assumed; give --cell, the side along x\n\n";
 
 /// Note for a map whose cell may be meant in two ways.
-const TAKEN: &str = "this map has no size, so it is taken as a square, as in rc solve; its point spacings along x and y then differ; if \
-                     they are equal, give --cell-y, the side along y\n\n";
+const TAKEN: &str = "this map has no size, so it is taken as a square with different point spacings along x and y, as in rc solve; if the \
+                     spacings are in fact equal, give --cell-y, the side along y\n\n";
 
 fn finite(path: &Path, field: Field) -> Result<Field, CliError> {
     heights::check_finite(path, &field)?;

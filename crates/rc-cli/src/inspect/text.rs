@@ -124,11 +124,23 @@ fn spectrum_lines(s: &SurfaceRecord) -> String {
 
 /// Statistics of a pressure field, with its distribution.
 #[must_use]
-pub(crate) fn pressure(statistics: &PressureStatistics) -> String {
+///
+/// `elements` are those of the solve along x and y. A coarser grid has means over blocks of them.
+pub(crate) fn pressure(statistics: &PressureStatistics, elements: [usize; 2]) -> String {
     let s = statistics;
+    let [nx, ny] = s.grid;
+    let percent = digits(100.0 * s.area_fraction_cells, 4);
     let lines = [
-        ("grid", format!("{} x {} elements", s.grid[0], s.grid[1])),
-        ("contact area", format!("{} % of the elements", digits(100.0 * s.area_fraction_cells, 4))),
+        if s.grid == elements {
+            ("grid", format!("{nx} x {ny} elements"))
+        } else {
+            ("grid", format!("{nx} x {ny} means over blocks of {} x {} elements", elements[0] / nx, elements[1] / ny))
+        },
+        if s.grid == elements {
+            ("contact area", format!("{percent} % of the elements"))
+        } else {
+            ("touched blocks", format!("{percent} %, those with an element in contact"))
+        },
         ("mean pressure", engineering(s.mean_pressure, "Pa")),
         ("mean in contact", engineering(s.mean_contact_pressure, "Pa")),
         ("rms, max pressure", format!("{}, {}", engineering(s.rms_pressure, "Pa"), engineering(s.max_pressure, "Pa"))),

@@ -44,9 +44,9 @@ impl Certificate {
         Self {
             rows,
             note: "All errors come from a fresh application of the elastic operator to the pressure that is shown. The error in the energy \
-                   norm is relative to the pressure. Gap, overlap and penetration are relative to the range of heights, and the load to the given \
-                   one. The errors bound how far the pressure is from the solution on these elements. The error bar of the area says \
-                   how far that is from infinitely fine elements.",
+                   norm is relative to the pressure. Gap, overlap and a given penetration are relative to the range of heights. A given load \
+                   is relative to itself. The errors bound how far the pressure is from the solution on these elements. The error bar of the \
+                   contact area is another error: the difference from the area on infinitely fine elements.",
         }
     }
 }

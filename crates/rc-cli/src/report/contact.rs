@@ -187,7 +187,7 @@ fn maps(result: &ResultFolder) -> Maps {
         format!("Every {what} is a pixel.")
     } else {
         format!(
-            "The maps have at most {MOST_PIXELS} x {MOST_PIXELS} pixels. Each is a mean over some of the {grid} {what}s."
+            "The maps have at most {MOST_PIXELS} x {MOST_PIXELS} pixels. Each pixel is a mean over a block of the {grid} {what}s."
         )
     };
     let [nx, ny] = summary.grid;

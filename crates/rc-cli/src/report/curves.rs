@@ -9,7 +9,7 @@ use super::command::{flags, quoted};
 use super::page::{Command, Page, Text, Tile, WITHOUT_FILES, made};
 use super::percolation;
 use crate::error::CliError;
-use rc_core::quantity::{Scale, digits, engineering};
+use rc_core::quantity::{Scale, count, digits, engineering};
 use rc_sweep::TABLE_FILE;
 
 /// The columns of `sweep.csv` that the page uses, in SI units.
@@ -85,7 +85,12 @@ pub(super) fn page(folder: &Path, settings: Option<&Value>) -> Result<Page<Curve
     let files = text.map(|text| Text { title: "Settings of the sweep", text }).into_iter().collect();
     Ok(Page {
         title: format!("Sweep: {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
-        subtitle: format!("{} rows: {surfaces} surfaces, given {}", rows.len(), rows[0].control),
+        subtitle: format!(
+            "{} on {}, at prescribed {}s",
+            count(rows.len(), "row"),
+            count(surfaces, "surface"),
+            rows[0].control
+        ),
         status,
         good,
         tiles: tiles(&rows),
@@ -220,7 +225,7 @@ fn table(scenes: Vec<SceneCurves>, rows: &[Row]) -> Curves {
         heads,
         rows: rows.iter().map(cells).collect(),
         note: "Thin lines are single surfaces. Thick lines with dots are means over the surfaces, at loads that all surfaces have. \
-               Penetration is counted from first touch. Linear axes begin at zero, logarithmic ones do not.",
+               Penetration is counted from first touch. Linear axes begin at zero, but logarithmic ones do not.",
     }
 }
 

@@ -87,7 +87,7 @@ pub(super) fn page(folder: &Path, settings: &Value) -> Result<Page<Body>, CliErr
     let files = serde_json::to_string_pretty(settings).ok();
     Ok(Page {
         title: format!("Mean: {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
-        subtitle: format!("Mean of {} over realisations, given {}", first.mean_of, first.control),
+        subtitle: format!("Mean of {} over realisations, at prescribed {}s", first.mean_of, first.control),
         status,
         good: open == 0,
         tiles: tiles(&means),
@@ -226,9 +226,9 @@ fn body(means: &[Estimate]) -> Body {
         quantity: Named { label: format!("mean {}", first.mean_of.replace('_', " ")), unit: first.unit() },
         load: Named { label: first.control.clone(), unit: first.load_unit() },
         means: means.iter().map(Curve::of).collect(),
-        heads: ["load", "mean", "error", "of statistics", "of the grid", "realisations", "status"],
+        heads: ["load", "mean", "total error", "statistical error", "grid error", "realisations", "status"],
         rows: means.iter().map(Estimate::row).collect(),
-        level_heads: ["grid", "realisations", "mean", "standard deviation", "cost of each", "part of the cost"],
+        level_heads: ["grid", "realisations", "mean", "standard deviation", "cost of each", "share of the cost"],
         note: "A mean is the sum over its levels: the coarsest grid, and the differences from each grid to the next coarser one. The \
                square of its error is the sum of the squares of two errors: the standard error, and the error of the finest grid. Costs are elements times \
                applications of the operator.",

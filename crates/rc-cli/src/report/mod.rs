@@ -22,7 +22,7 @@ use std::path::Path;
 
 use self::args::ReportArgs;
 use crate::error::CliError;
-use crate::files::result::SUMMARY_FILE;
+use crate::files::result::{SUMMARY_FILE, no_folder};
 use crate::terminal;
 use rc_sweep::{TABLE_FILE, files, settings_in};
 
@@ -32,7 +32,7 @@ const PAGE_FILE: &str = "report.html";
 /// The page of what is in `folder`.
 fn html(folder: &Path) -> Result<String, CliError> {
     if !folder.is_dir() {
-        return Err(CliError::in_file(folder, "no such folder; give the --out folder of a solve or a sweep"));
+        return Err(CliError::in_file(folder, no_folder(folder, "a solve or a sweep")));
     }
     let settings = settings_in(folder);
     if !folder.join(TABLE_FILE).is_file() {
@@ -58,7 +58,7 @@ fn html(folder: &Path) -> Result<String, CliError> {
 pub(crate) fn run(args: &ReportArgs) -> Result<(), CliError> {
     let target = args.out.clone().unwrap_or_else(|| args.folder.join(PAGE_FILE));
     if target.is_dir() {
-        return Err(CliError::in_file(&target, format_args!("is a folder; give --out FILE, as {PAGE_FILE}")));
+        return Err(CliError::in_file(&target, format_args!("is a folder; give --out FILE, for example {PAGE_FILE}")));
     }
     let page = html(&args.folder)?;
     files::check_folder(target.parent().unwrap_or(Path::new("")))?;

@@ -18,8 +18,15 @@ use crate::scene::keys::{ContactKeys, EXAMPLE, RunKeys, Scene, SurfaceKeys};
 /// # Errors
 /// [`CliError::Input`] when the file cannot be read, is not TOML, has an unknown key or a value of the wrong type.
 pub fn read(path: &Path) -> Result<Scene, CliError> {
-    let text = std::fs::read_to_string(path)
+    let bytes = std::fs::read(path)
         .map_err(|cause| CliError::in_file(path, format_args!("cannot read this scene file: {cause}")))?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        let file = path.display();
+        CliError::in_file(
+            path,
+            format_args!("not a scene file, which is text (TOML); for a height map give --heights {file}"),
+        )
+    })?;
     let scene = parse(&text).map_err(|message| CliError::in_file(path, message))?;
     Ok(scene.relative_to(path.parent().unwrap_or(Path::new(""))))
 }
@@ -89,7 +96,7 @@ fn group_of<T: for<'de> Deserialize<'de>>(table: &Table) -> Result<T, CliError> 
         };
         let wrong = table.iter().find(|(key, value)| is_wrong(key, value));
         let key = wrong.map_or("scene", |(key, _)| key.as_str());
-        CliError::input(format_args!("{key}: {}", error.message()))
+        CliError::input(format_args!("{key}: {}", in_words(error.message())))
     })
 }
 
@@ -113,10 +120,39 @@ fn unknown_key(key: &str, known: &[String]) -> String {
 
 fn at_line(text: &str, error: &toml::de::Error) -> String {
     let message = error.message();
-    match error.span() {
-        Some(span) => format!("line {}: {message}", line_of(text, span.start)),
-        None => message.to_owned(),
+    let Some(span) = error.span() else { return message.to_owned() };
+    let number = line_of(text, span.start);
+    let said = in_words(message);
+    // Only errors of values have other words, and the key is before the value.
+    let line = text.lines().nth(number - 1).unwrap_or_default();
+    let key = line.split_once('=').filter(|_| said != message).map(|(key, _)| format!("{}: ", key.trim()));
+    format!("line {number}: {}{said}", key.unwrap_or_default())
+}
+
+/// The message of serde about a value, without the names of Rust types.
+///
+/// `invalid type: string "1e5", expected f64` becomes `must be a number, not "1e5"`. Other messages stay as they are.
+fn in_words(message: &str) -> String {
+    let Some((found, expected)) = message.split_once(", expected ") else { return message.to_owned() };
+    if let Some(name) = found.strip_prefix("unknown variant ") {
+        // The name of a kernel that is a function appears in results only.
+        let names = expected.split('`').skip(1).step_by(2).filter(|name| *name != "own");
+        let names: Vec<String> = names.map(|name| format!("'{name}'")).collect();
+        return format!("must be {}, not {}", names.join(" or "), name.replace('`', "'"));
     }
+    let Some(value) = found.strip_prefix("invalid type: ").or_else(|| found.strip_prefix("invalid value: ")) else {
+        return message.to_owned();
+    };
+    let kinds = ["integer ", "floating point ", "boolean ", "string "];
+    let value = kinds.iter().fold(value, |value, kind| value.trim_start_matches(kind)).replace('`', "");
+    let expected = match expected {
+        "usize" | "u64" | "u32" => "a whole number of at least 0",
+        "f64" => "a number without quotes",
+        "a string" => "text in quotes",
+        "a boolean" => "true or false",
+        other => other,
+    };
+    format!("must be {expected}, not {value}")
 }
 
 fn line_of(text: &str, offset: usize) -> usize {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rc_core::{Field, Grid, PeriodicCell};
-use rc_heights::{HeightMap, ReadParams, SAME_LENGTH, Scales};
+use rc_heights::{Format, HeightMap, ReadParams, SAME_LENGTH, Scales};
 
 use super::as_read::AsRead;
 use crate::error::CliError;
@@ -31,13 +31,19 @@ pub(crate) fn check_finite(path: &Path, field: &Field) -> Result<(), CliError> {
         Some(i) => {
             let (row, column, value) = (i / nx, i % nx, field.values()[i]);
             let missing = field.values().iter().filter(|value| value.is_nan()).count();
-            let cure = if missing > 0 {
-                format!("; {missing} of {} are missing; rc surface --fill laplace fills them", field.grid().len())
-            } else {
-                String::new()
-            };
-            let place = format_args!("row {row}, column {column} (from 0) is {value}; heights must be finite{cure}");
-            Err(CliError::in_file(path, place))
+            let place = format!("row {row}, column {column} (from 0) is {value}; heights must be finite");
+            let of_all = format!("{missing} of {}", field.grid().len());
+            Err(CliError::in_file(
+                path,
+                match missing {
+                    0 => place,
+                    _ if rc_heights::format_of(path) == Ok(Format::Xyz) => format!(
+                        "as a list of points x, y, z it lacks {of_all} heights; rc surface --fill laplace fills them, or give \
+                     --layout matrix if each line is a row of the map"
+                    ),
+                    _ => format!("{place}; rc surface --fill laplace fills the missing points ({of_all})"),
+                },
+            ))
         }
     }
 }
@@ -60,7 +66,7 @@ pub(crate) fn sides(
     for ((given, side), (key, extent)) in given.iter().zip(of_file).zip([("cell", "wide"), ("cell_y", "high")]) {
         if let Some(given) = given.filter(|given| !same(*given, side)) {
             let message = format_args!(
-                "the map is {} {extent}, {key} says {}; omit {key}, or convert the map to .npy, which has no size",
+                "the map is {} {extent}, but {key} says {}; omit {key}, or convert the map to .npy, which has no size",
                 length(side),
                 length(given)
             );

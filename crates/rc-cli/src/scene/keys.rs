@@ -91,8 +91,7 @@ pub struct SurfaceKeys {
     pub amplitudes: Option<Amplitudes>,
     /// Elements per side, 512 or 512x256 [default: the map's; 32 per shortest wave]
     ///
-    /// 512x256 is 512 along x and 256 along y. The adaptive method has elements of this size near contacts
-    /// only, and smaller ones at edges with --border-level.
+    /// 512x256 is 512 along x and 256 along y.
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub grid: Option<GridSpec>,
 }
@@ -156,7 +155,7 @@ pub struct ContactKeys {
     pub border_level: Option<usize>,
     /// Certified relative energy error of the pressure [default: 0.01]
     ///
-    /// Pits, offsets and light loads do not loosen it.
+    /// In contrast to --tolerance, it stays as strict with deep pits, offset heights and light loads.
     #[arg(long, value_name = "ERROR", help_heading = help::ACCURACY, allow_hyphen_values = true)]
     pub energy_tolerance: Option<f64>,
     /// Instead: overlap relative to the peak-to-valley height, or auto
@@ -165,7 +164,7 @@ pub struct ContactKeys {
     /// grid.
     #[arg(long, value_name = "ERROR", help_heading = help::ACCURACY, allow_hyphen_values = true)]
     pub tolerance: Option<ToleranceSpec>,
-    /// Wanted relative error of the contact area, as 0.5%: sets the grid
+    /// Wanted relative error of the contact area, such as 0.5%: sets the grid
     ///
     /// The grid is no finer than needed. The tolerance is auto, unless it is given. For random surfaces, instead of
     /// --grid.

@@ -6,6 +6,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use rc_core::quantity::digits;
 use rc_core::{Boundary, Field, Grid, HeightSource, PeriodicCell};
 use rc_fractal::{
     Moments, SpectrumParams, Surface, height_and_slope_of_grid, height_and_slope_of_patch, moments_of_grid,
@@ -162,13 +163,13 @@ impl SurfaceSetup {
         let grid = heights.grid();
         let (nx, ny) = (grid.nx(), grid.ny());
         if let Some(expected) = expected.filter(|expected| (expected.nx(), expected.ny()) != (nx, ny)) {
-            let message = format_args!("the map has {grid} elements, grid says {expected}; omit grid");
+            let message = format_args!("the map has {grid} elements, but grid says {expected}; omit grid");
             return Err(CliError::in_file(path, message));
         }
         if range[1] <= range[0] && !self.may_be_flat {
             let message = format_args!(
-                "all heights are {:e}; a flat surface in a periodic cell has no contact problem",
-                range[1]
+                "all heights are {}; a flat surface in a periodic cell has no contact problem",
+                digits(range[1], 6)
             );
             return Err(CliError::in_file(path, message));
         }

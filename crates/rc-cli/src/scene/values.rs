@@ -37,10 +37,8 @@ impl FromStr for GridSpec {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let side = |text: &str| {
-            let expected = || format!("a grid is a number of elements per side, as 512, or 512x256, not '{text}'");
-            text.trim().parse::<usize>().map_err(|_| expected())
-        };
+        let expected = || format!("a grid is a number of elements per side such as 512, or 512x256, not '{text}'");
+        let side = |side: &str| side.trim().parse::<usize>().map_err(|_| expected());
         match text.split_once('x') {
             Some((nx, ny)) => Ok(Self { nx: side(nx)?, ny: side(ny)? }),
             None => Ok(Self::square(side(text)?)),
@@ -61,7 +59,7 @@ impl<'de> Deserialize<'de> for GridSpec {
             type Value = GridSpec;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number of elements per side, as 512, or \"512x256\"")
+                f.write_str("a number of elements per side such as 512, or \"512x256\"")
             }
 
             fn visit_i64<E: de::Error>(self, value: i64) -> Result<GridSpec, E> {
@@ -104,7 +102,7 @@ impl FromStr for ToleranceSpec {
             _ => text
                 .parse()
                 .map(Self::Relative)
-                .map_err(|_| format!("a tolerance is a number, as 1e-6, or auto, not '{text}'")),
+                .map_err(|_| format!("a tolerance is a number such as 1e-6, or auto, not '{text}'")),
         }
     }
 }
@@ -120,7 +118,7 @@ impl Serialize for ToleranceSpec {
 
 impl<'de> Deserialize<'de> for ToleranceSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        number_or_text(deserializer, "a number, as 1e-6, or \"auto\"")
+        number_or_text(deserializer, "a number such as 1e-6, or \"auto\"")
     }
 }
 
@@ -134,7 +132,7 @@ impl FromStr for Fraction {
     fn from_str(text: &str) -> Result<Self, String> {
         let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
         let value = number.trim().parse().map_or(f64::NAN, |value: f64| value * unit);
-        let expected = || format!("a fraction is a number above 0 and below 1, as 0.005 or 0.5%, not '{text}'");
+        let expected = || format!("a fraction is a number above 0 and below 1, such as 0.005 or 0.5%, not '{text}'");
         (value > 0.0 && value < 1.0).then_some(Self(value)).ok_or_else(expected)
     }
 }
@@ -147,7 +145,7 @@ impl Serialize for Fraction {
 
 impl<'de> Deserialize<'de> for Fraction {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        number_or_text(deserializer, "a number above 0 and below 1, as 0.005, or \"0.5%\"")
+        number_or_text(deserializer, "a number above 0 and below 1 such as 0.005, or \"0.5%\"")
     }
 }
 

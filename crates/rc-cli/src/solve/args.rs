@@ -36,7 +36,7 @@ Manual pages with longer texts: rc man --out man";
 
 const SOLVE_MANUAL: &str = "\
 Where neither scene file nor flags give a value, that of the paper's surface is taken: cell 0.01 m, E = 0.4 GPa, ν = 0.45, N = 64, H = 0.8, \
-rms 13 µm, seed 1, kernel love, energy tolerance 0.01. A height map never gets its cell or material: with --heights, give \
+rms 13 µm, seed 1, kernel love, energy tolerance 0.01. A height map never takes the cell or the material of the paper's surface: with --heights, give \
 --e-star, or --young and --poisson. If the file has no size, give --cell too. Only rc solve without arguments (or with --dry-run alone) has a \
 load of its own. Otherwise give --pressure or --penetration, exactly one. A flag also replaces its alternatives: --penetration replaces the pressure of the scene file, and \
 --heights its random surface. Relative paths in a scene file start at its folder.

@@ -83,6 +83,6 @@ impl Expected {
             ("elements", or_unknown(self.elements.map(elements))),
             ("memory", or_unknown(self.memory_bytes.map(memory))),
             ("time", or_unknown(self.wall_seconds.map(seconds))),
-        ]) + "\nNothing was solved or written; elements, memory and time are right within a factor of two if the solve takes seconds.\n"
+        ]) + "\nNothing was solved or written; elements, memory and time are right within a factor of two for solves of a second or longer.\n"
     }
 }

@@ -8,6 +8,7 @@ use rc_sweep::{Summary, files};
 
 use super::checked::CheckedScene;
 use super::dry_run;
+use super::messages;
 use super::solved::Solved;
 use crate::error::CliError;
 use crate::export::{xarray, zarr};
@@ -129,10 +130,13 @@ impl Job {
         let Some(message) = solved.failure() else { return Ok(()) };
         let written = if self.run.out.is_some() { "; the results are written and marked not_converged" } else { "" };
         Err(match stopped {
-            Some(Reason::Interrupted) => CliError::Interrupted(format!("interrupted: {message}{written}")),
-            Some(Reason::TimeLimit(limit)) => {
-                CliError::NotConverged(format!("time_limit: {limit} was not enough: {message}{written}"))
+            Some(Reason::Interrupted) => {
+                CliError::Interrupted(format!("interrupted: {}{written}", messages::of_stopped(message)))
             }
+            Some(Reason::TimeLimit(limit)) => CliError::NotConverged(format!(
+                "time_limit: {limit} was not enough: {}; give a longer time limit or a larger tolerance{written}",
+                messages::of_stopped(message)
+            )),
             None => CliError::NotConverged(format!("{message}{written}")),
         })
     }

@@ -27,7 +27,7 @@ pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &Conta
             Ok(()) => CliError::input(format_args!("memory_limit: {error}")),
         },
         SolveError::AreaError { wanted, reached, side } => CliError::input(format_args!(
-            "area_error: {} % cannot be reached; with {side} elements per side the error is {} %",
+            "area_error: {} % cannot be reached; with {side} elements per side, the most that are possible, the error is {} %; give at least this",
             digits(100.0 * wanted, 2),
             digits(100.0 * reached, 2)
         )),
@@ -46,15 +46,15 @@ fn of_problem(error: &ProblemError, contact: &ContactSetup) -> CliError {
     let units = contact.units;
     match error {
         ProblemError::Penetration { value, full_contact } => CliError::input(format_args!(
-            "penetration: must be above 0 and below that of full contact, {:.6e} m, not {:.6e} m; beyond it the penetration \
+            "penetration: must be above 0 and below that of full contact, {} m, not {} m; beyond it the penetration \
              no longer determines the pressure, so give --pressure",
-            units.metres(*full_contact),
-            units.metres(*value)
+            digits(units.metres(*full_contact), 7),
+            digits(units.metres(*value), 7)
         )),
         ProblemError::FullyPlastic { value, deepest } => CliError::input(format_args!(
-            "penetration: must be above 0 and below {:.6e} m, where all is plastic, not {:.6e} m",
-            units.metres(*deepest),
-            units.metres(*value)
+            "penetration: must be above 0 and below {} m, where all is plastic, not {} m",
+            digits(units.metres(*deepest), 7),
+            digits(units.metres(*value), 7)
         )),
         ProblemError::TooSoft { value, hardness } => CliError::input(format_args!(
             "hardness: {} Pa cannot bear a mean pressure of {} Pa; it must be above the pressure",
@@ -92,10 +92,11 @@ fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
         AdaptiveError::Memory { grid, needed, area_percent, .. } => {
             let part = match area_percent {
                 Some(percent) => format!(", at an estimated contact area of {} %,", digits(*percent, 2)),
-                None => " for its base grid alone".into(),
+                None => " needs its base grid, which alone".into(),
             };
             let what = format!("the adaptive method on {grid} elements{part}");
-            match budget.check(&what, 1e6 * *needed as f64, |_| String::new()) {
+            let remedy = |_| "; give a coarser grid".to_owned();
+            match budget.check(&what, 1e6 * *needed as f64, remedy) {
                 Err(refused) => refused.into(),
                 Ok(()) => CliError::input(format_args!("memory_limit: {error}")),
             }
@@ -109,8 +110,14 @@ fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
 
 /// The message about a solution that did not reach the tolerance.
 pub(super) fn not_converged(grid: Grid, iterations: usize, certificate: &Certificate, bound: ErrorBound) -> String {
-    format!(
-        "not converged to {bound} on {grid} elements after {iterations} iterations: {certificate}; give \
-         a larger tolerance or a longer time limit; for other causes see Questions in the guide (docs/faq.md)"
-    )
+    format!("not converged to {bound} on {grid} elements after {iterations} iterations: {certificate}{REMEDY}")
+}
+
+/// What to do about a solution that did not reach the tolerance.
+const REMEDY: &str =
+    "; give a larger tolerance or a longer time limit; for other causes see Questions in the guide (docs/faq.md)";
+
+/// The message of [`not_converged`] for a solve that was stopped, so that its cause is known.
+pub(super) fn of_stopped(message: &str) -> &str {
+    message.strip_suffix(REMEDY).unwrap_or(message)
 }

@@ -13,8 +13,8 @@ use crate::scene::values::GridSpec;
 pub(crate) struct TreatmentKeys {
     /// Keep a part: square (the largest in the middle), 512, 512x256, or 512x256+100+50
     ///
-    /// 512x256+100+50 keeps 512 x 256 points, from point 100 along x and point 50 along y. All treatments take
-    /// equal spacings along x and y for a map without a size.
+    /// 512x256+100+50 keeps 512 x 256 points, from point 100 along x and point 50 along y. If neither
+    /// the file nor --cell-y gives the side along y, all treatments assume equal spacings along x and y.
     #[arg(long, value_name = "PART")]
     pub(crate) crop: Option<Crop>,
     /// Mirror along axes: x, y, z (peaks become valleys, for replicas), or x,z
@@ -32,7 +32,7 @@ pub(crate) struct TreatmentKeys {
     /// to their mean towards the borders.
     #[arg(long, value_name = "HOW", hide_possible_values = true)]
     pub(crate) periodic: Option<PeriodicName>,
-    /// Part of a side that --periodic window fades, at each of its ends
+    /// Fraction of a side that --periodic window fades, at each of its ends
     #[arg(long, value_name = "PART", default_value_t = 0.1, allow_hyphen_values = true)]
     pub(crate) taper: f64,
     /// Gaussian filter (ISO 16610-61) that halves waves of this length (m)

@@ -50,7 +50,7 @@ pub(crate) struct SweepArgs {
     /// The lines are for HyperQueue or GNU parallel. Without N there is a part for each row.
     #[arg(long, value_name = "N", help_heading = "Sweep", num_args = 0..=1, default_missing_value = ListSpec::ROWS, require_equals = true, conflicts_with = "shard")]
     pub(crate) list: Option<ListSpec>,
-    /// Wanted relative rms error of the mean over surfaces, as 0.5%
+    /// Wanted relative rms error of the mean over surfaces, such as 0.5%
     ///
     /// Chooses how many realisations are solved on which grids. --seed is the first, --grid the finest.
     #[arg(long, value_name = "ERROR", help_heading = "Sweep", allow_hyphen_values = true)]

@@ -2,6 +2,7 @@
 //!
 //! The finished rows are written into the table, then the process ends.
 
+use rc_core::quantity::count;
 use rc_sweep::Kept;
 
 use super::bar::RowBar;
@@ -20,11 +21,11 @@ pub(super) fn install(end: impl Fn() + Send + 'static) {
 /// is not in the table.
 pub(super) fn end(kept: &Kept<'_>, n_rows: Option<usize>, bar: &RowBar) {
     bar.clear();
-    let of_all = n_rows.map_or_else(String::new, |n_rows| format!(" of {n_rows}"));
-    let rows = format!("interrupted: {}{of_all} rows", kept.rows().len());
+    let finished = kept.rows().len();
+    let rows = n_rows.map_or_else(|| count(finished, "row"), |all| format!("{finished} of {}", count(all, "row")));
     terminal::tell(&match kept.write_table().map_err(CliError::from) {
-        Ok(path) => format!("{rows} are in {}; --resume goes on", path.display()),
-        Err(error) => format!("{rows} are kept, --resume goes on; {error}"),
+        Ok(path) => format!("interrupted with {rows} in {}; --resume continues", path.display()),
+        Err(error) => format!("interrupted with {rows} kept; --resume continues; {error}"),
     });
     std::process::exit(INTERRUPTED.into());
 }

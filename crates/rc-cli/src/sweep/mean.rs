@@ -5,7 +5,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use rc_core::quantity::digits;
+use rc_core::quantity::{count, digits};
 use rc_sweep::files::{self, write_synced};
 use rc_sweep::memory::Budget;
 use rc_sweep::{ControlKind, Ensemble, EnsembleLevel, EnsembleMean, EnsemblePlan, WantedMean, Workers, to_json};
@@ -61,10 +61,12 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
         (false, true) => {}
         (false, false) => {
             let seconds = digits(started.elapsed().as_secs_f64(), 3);
-            let before = if n_before > 0 { format!(" ({n_before} solves kept from before)") } else { String::new() };
+            let before =
+                if n_before > 0 { format!(" ({} kept from before)", count(n_before, "solve")) } else { String::new() };
             let means: String = means.iter().map(lines).collect();
             terminal::print(&format!(
-                "{means}{seconds} s, {threads} threads{before}\n\nwritten to {}\n",
+                "{means}{seconds} s, {}{before}\n\nwritten to {}\n",
+                count(threads, "thread"),
                 path.display()
             ))?;
         }
@@ -140,7 +142,7 @@ fn lines(mean: &EnsembleMean) -> String {
     let levels: String = [names].into_iter().chain(mean.levels.iter().map(cells)).map(columns).collect();
     let part = digits(mean.cost / mean.cost_of_plain_mean, 2);
     format!(
-        "{head}{levels}  cost (elements times applications of the operator): {part} times the estimate with the finest grid alone\n"
+        "{head}{levels}  cost (elements times applications of the operator): {part} of the estimated cost on the finest grid alone\n"
     )
 }
 

@@ -1,5 +1,7 @@
 //! `rc sweep merge`: the shards of a sweep merged into one sweep.
 
+use rc_core::quantity::count;
+
 use super::args::MergeArgs;
 use super::messages;
 use crate::error::CliError;
@@ -13,9 +15,8 @@ use crate::terminal;
 pub(super) fn run(args: &MergeArgs) -> Result<(), CliError> {
     let merged = rc_sweep::merge(&args.folders, &args.out)?;
     if !args.quiet {
-        let (n_rows, n_shards) = (merged.rows.len(), args.folders.len());
-        let table = merged.table.display();
-        terminal::print(&format!("{n_rows} rows of {n_shards} shards\n\nwritten to {table}\n"))?;
+        let (rows, shards) = (count(merged.rows.len(), "row"), count(args.folders.len(), "shard"));
+        terminal::print(&format!("{rows} of {shards}\n\nwritten to {}\n", merged.table.display()))?;
     }
     messages::check_converged(&merged.rows, &merged.table)
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rc_core::quantity::digits;
+use rc_core::quantity::{count, digits};
 use rc_sweep::{EnsembleMean, RunError, SweepError, SweepRows, TABLE_FILE};
 
 use crate::error::CliError;
@@ -31,23 +31,25 @@ fn not_kept(cause: &str, kept: usize) -> String {
 fn refused(error: &SweepError) -> CliError {
     let remedy = match error {
         SweepError::AnotherProcess { .. } => "; wait for it, or give another --out",
-        SweepError::HoldsSweep { .. } => "; --resume goes on with it, or give another --out",
+        SweepError::HoldsSweep { .. } => "; continue it with --resume, or give another --out",
         SweepError::NothingToResume { .. } => "; give the folder of a sweep",
         SweepError::InTheWay { .. } | SweepError::OtherShard { .. } => "; give another --out",
-        SweepError::OtherSettings { .. } => "; give its settings, or another --out",
+        SweepError::OtherSettings { .. } => "; repeat its settings, or give another --out",
         SweepError::DamagedLine { .. } => "; remove the line, and --resume solves its row again",
         SweepError::DamagedShape { .. } => "; start the sweep again with another --out",
         SweepError::NoNumber { .. } => "; choose another --mean-of",
         SweepError::NoShards => "; give those of all shards",
         SweepError::MissingRows { .. } => "; finish it with --resume",
+        SweepError::SameShard { .. } => "; give each shard once",
         SweepError::NotSameSweep { .. } => "; give the shards of one sweep",
         SweepError::OtherDivision { .. } => "; give shards i/n with the same n",
         SweepError::OtherDeal { .. } => "; solve all shards with one version of rc",
         SweepError::MissingShard { .. } => "; give the folders of all shards",
         SweepError::MissingFields { .. } => "; --resume in the folder of the shard makes them again",
         SweepError::EmptyShard { shard, rows } => {
+            let (has, most) = (count(*rows, "row"), count(*rows, "shard"));
             return CliError::input(format_args!(
-                "shard: {shard} of a sweep of {rows} rows is empty; use at most {rows} shards"
+                "shard: {shard} is empty, because the sweep has only {has}; use at most {most}"
             ));
         }
         SweepError::Threads { cause, .. } => return CliError::input(format_args!("threads: {cause}")),
@@ -59,19 +61,23 @@ fn refused(error: &SweepError) -> CliError {
 /// The error of a sweep that ended before its last row.
 pub(super) fn of_run(error: RunError<CliError>) -> CliError {
     match error {
-        RunError::Refused { error: CliError::Input(message), missing, kept } if kept > 0 => CliError::input(
-            format_args!("{message}; {missing} rows cannot be solved, the other {kept} are in {TABLE_FILE}"),
-        ),
+        RunError::Refused { error: CliError::Input(message), missing, kept } if kept > 0 => {
+            CliError::input(format_args!(
+                "{message}; {} could not be solved, and {TABLE_FILE} has the other {kept}",
+                count(missing, "row")
+            ))
+        }
         RunError::Refused { error, .. } | RunError::Failed(error) => error,
         RunError::Sweep(error) => error.into(),
-        _ => CliError::input("the sweep ended for an unknown reason; --resume goes on"),
+        _ => CliError::input("the sweep ended for an unknown reason; --resume continues"),
     }
 }
 
 /// The error for a time limit that was too short for all rows.
 pub(super) fn out_of_time(limit: TimeLimit, missing: usize, n_rows: usize) -> CliError {
     CliError::NotConverged(format!(
-        "time_limit: {missing} of {n_rows} rows are not solved after {limit}; --resume goes on"
+        "time_limit: {limit} was too short for {missing} of {}; --resume continues",
+        count(n_rows, "row")
     ))
 }
 
@@ -79,7 +85,8 @@ pub(super) fn out_of_time(limit: TimeLimit, missing: usize, n_rows: usize) -> Cl
 pub(super) fn mean_out_of_time(limit: Option<TimeLimit>, kept: usize) -> CliError {
     let after = limit.map_or_else(String::new, |limit| format!(" after {limit}"));
     CliError::NotConverged(format!(
-        "time_limit: the mean is not reached yet{after}; {kept} solves are kept, --resume goes on"
+        "time_limit: the mean is not reached yet{after}; --resume continues after the {} so far",
+        count(kept, "solve")
     ))
 }
 
@@ -90,17 +97,17 @@ pub(super) fn check_means(means: &[EnsembleMean]) -> Result<(), CliError> {
     let reached = format!("error_of_mean: {} at {} {:e}", mean.mean_of, mean.control, mean.control_value);
     Err(CliError::NotConverged(match (mean.not_converged, mean.levels.last()) {
         (0, Some(finest)) if mean.grid_error > mean.standard_error => format!(
-            "{reached} has an error of {} on grid {}, wanted {}; give a finer --grid",
+            "{reached} has an error of {} on grid {}, but {} was wanted; give a finer --grid",
             percent(mean.relative_error),
             finest.grid,
             percent(mean.wanted_error)
         ),
         (0, _) => format!(
-            "{reached} has the error {} with the maximum number of realisations, wanted {}; give a larger error",
+            "{reached} has an error of {} with the maximum number of realisations, but {} was wanted; give a larger --error-of-mean",
             percent(mean.relative_error),
             percent(mean.wanted_error)
         ),
-        (n, _) => format!("{reached}: {n} solves did not converge; they are marked not_converged in {TABLE_FILE}"),
+        (n, _) => format!("{reached}: {} did not converge, marked not_converged in {TABLE_FILE}", count(n, "solve")),
     }))
 }
 
@@ -109,8 +116,8 @@ pub(super) fn check_converged(rows: &SweepRows, table: &Path) -> Result<(), CliE
     match rc_sweep::n_not_converged(rows) {
         0 => Ok(()),
         n => Err(CliError::NotConverged(format!(
-            "{n} of {} rows did not converge; they are marked not_converged in {}",
-            rows.len(),
+            "{n} of {} did not converge, marked not_converged in {}",
+            count(rows.len(), "row"),
             table.display()
         ))),
     }

@@ -20,7 +20,7 @@ pub use planned::{MapMark, SweepLists, plan};
 use std::sync::Arc;
 use std::time::Instant;
 
-use rc_core::quantity::digits;
+use rc_core::quantity::{count, digits};
 use rc_sweep::memory::Budget;
 use rc_sweep::{Shard, Sweep, Workers, to_json};
 
@@ -78,9 +78,10 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
             let seconds = digits(started.elapsed().as_secs_f64(), 3);
             let before = if n_before > 0 { format!(" ({n_before} kept from before)") } else { String::new() };
             let table = table.display();
-            terminal::print(&format!(
-                "{n_rows} rows{before} in {seconds} s, {threads} threads\n\nwritten to {table}\n"
-            ))?;
+            let finished = kept.rows().len();
+            let rows = if finished < n_rows { format!("{finished} of {n_rows} rows") } else { count(n_rows, "row") };
+            let threads = count(threads, "thread");
+            terminal::print(&format!("{rows}{before} in {seconds} s, {threads}\n\nwritten to {table}\n"))?;
         }
     }
     if let (missing @ 1.., Some(limit)) = (n_rows - kept.rows().len(), surfaces.run.time_limit) {

@@ -36,10 +36,9 @@ impl FromStr for ShardSpec {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let Some(rest) = text.strip_prefix("auto") else {
-            return text
-                .parse()
-                .map(Self::Given)
-                .map_err(|_| format!("a shard is i/n with i from 1 to n, as 2/8, or auto, or auto/8, not '{text}'"));
+            return text.parse().map(Self::Given).map_err(|_| {
+                format!("a shard is i/n with i from 1 to n, such as 2/8; or auto, or auto/8, not '{text}'")
+            });
         };
         let count = rest.strip_prefix('/').map(|count| count.trim().parse().ok().filter(|&count| count > 0));
         match (rest, count) {

@@ -61,8 +61,13 @@ impl Surfaces {
         for (name, scene) in &scenes {
             let loads = loads(args, control, &scene.contact)?;
             check_rows(scenes.len(), args.seeds.as_ref(), loads.len())?;
+            // One scene alone needs no name.
+            let in_scene = |error| match error {
+                CliError::Input(message) if scenes.len() > 1 => CliError::Input(format!("scene {name}: {message}")),
+                other => other,
+            };
             for keys in seeded(args.seeds.as_ref(), name, scene)? {
-                surfaces.push(SweptSurface::new(name, keys, control, &loads)?);
+                surfaces.push(SweptSurface::new(name, keys, control, &loads).map_err(in_scene)?);
             }
         }
         Ok(Self { control, all: surfaces, n_scenes: scenes.len(), keeps_fields: args.fields, run, threads })
@@ -276,7 +281,7 @@ fn control(args: &SweepArgs, scenes: &[(String, Scene)]) -> Result<ControlKind, 
     for (name, scene) in scenes {
         match (of_scene(scene), found) {
             (None, _) => {
-                let message = "the loads are missing: give --pressures or --penetrations, as first:last:count";
+                let message = "the loads are missing: give --pressures or --penetrations, for example 1e4:1e6:8";
                 return Err(CliError::input(message));
             }
             (Some(kind), Some(other)) if kind != other => {

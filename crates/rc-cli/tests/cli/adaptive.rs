@@ -72,8 +72,8 @@ fn the_method_is_chosen_by_what_can_and_what_is_cheaper() {
     let small = ["solve", "--waves", "8", "--json", "--pressure"];
     let cases: &[(&[&str], &str, &str)] = &[
         (&["1e5", "--grid", "128"], "adaptive", "the contact area was estimated as"),
-        (&["1e5", "--grid", "128", "--method", "adaptive"], "adaptive", "asked for"),
-        (&["1e5", "--grid", "128", "--method", "uniform"], "uniform", "asked for"),
+        (&["1e5", "--grid", "128", "--method", "adaptive"], "adaptive", "as requested"),
+        (&["1e5", "--grid", "128", "--method", "uniform"], "uniform", "as requested"),
         (&["1e5", "--grid", "128", "--kernel", "spectral"], "uniform", "the kernel spectral has no adaptive form"),
         (&["4e6", "--grid", "128"], "uniform", "cheaper for the contact area of"),
         (&["1e9", "--grid", "128"], "uniform", "contact area of 100 %"),
@@ -261,7 +261,7 @@ fn a_border_level_refines_edges_and_keeps_the_grid() {
     let output = place.run(&[&scene[..], &["--border-level", "2", "--out", "fine"]].concat());
     let fine = summary_of(&output);
     assert_eq!((&fine["grid"], &fine["border_level"]), (&plain["grid"], &2.into()));
-    assert_eq!(reason(&fine), "adaptive: a border level is asked for");
+    assert_eq!(reason(&fine), "adaptive: a border level was given");
     assert!(number(&fine, "area_fraction_cells") < number(&plain, "area_fraction_cells"));
     assert_close("area", number(&fine, "area_fraction"), number(&plain, "area_fraction"), 0.02);
     let pressure = field(&place, "fine/pressure.npy");

@@ -38,7 +38,7 @@ fn bad_values_of_the_surface_are_refused_with_their_key() {
         (&["--hurst", "2"], "hurst"),
         (&["--roll-off", "9"], "roll_off"),
         (&["--seed", "-1"], "'-1' for '--seed <SEED>': must be a whole number, not negative"),
-        (&["--rms", "x"], "'x' for '--rms <M>': must be a number, as 4.5e5"),
+        (&["--rms", "x"], "'x' for '--rms <M>': must be a number, such as 4.5e5"),
         (&["--seed", "18446744073709551615"], "seed"),
         (&["--rms", "1", "--c0", "1"], "alternatives"),
     ];
@@ -171,7 +171,7 @@ fn write_bad_maps(place: &Place) -> Vec<(&'static str, &'static str)> {
         ("ragged.csv", "line 2"),
         ("text.csv", "line 2, value 2"),
         ("nan.csv", "row 1, column 1"),
-        ("empty.csv", "1 to"),
+        ("empty.csv", "it has no numbers; give a row of the map in each line"),
         ("map.bin", ".npy"),
         ("missing.npy", "cannot read"),
     ]

@@ -80,12 +80,12 @@ fn contradictions_and_what_is_missing_are_refused() {
     place.write("map.xyz", "0 0 1\n1 0 2\n2 0 3\n0 1 4\n1 1 5\n2 1 7\n");
     place.write("map.npy", npy("<f8", false, "(8, 8)", &f8(&bumps(8))));
     let cases: [(&[&str], &str); 13] = [
-        (&["surface", "--heights", &x3p, "--cell", "1e-3"], "24 µm wide, cell says 1 mm"),
+        (&["surface", "--heights", &x3p, "--cell", "1e-3"], "24 µm wide, but cell says 1 mm"),
         (&["surface", "--heights", &x3p, "--unit", "um"], "names its units"),
         (&["surface", "--heights", &x3p, "--height-scale", "1e-9"], "gives its heights in metres"),
         (&["surface", "--heights", &png, "--cell", "1"], "height_scale"),
         (&["surface", "--heights", &png, "--cell", "1", "--unit", "um", "--height-scale", "1e-9"], "omit unit"),
-        (&["surface", "--heights", "map.xyz", "--cell-y", "1"], "2 m high, cell_y says 1 m"),
+        (&["surface", "--heights", "map.xyz", "--cell-y", "1"], "2 m high, but cell_y says 1 m"),
         (&["surface", "--heights", "map.npy", "--cell", "1", "--unit", "V"], "'V' is not a unit of length"),
         (&["surface", "--heights", "map.npy", "--cell", "1", "--crop", "9"], "not inside the map of 8 x 8"),
         (&["surface", "--heights", "map.npy", "--cell", "1", "--crop", "half"], "512x256+100+50"),

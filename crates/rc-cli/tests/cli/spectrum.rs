@@ -143,7 +143,7 @@ fn files_that_are_no_surface_are_refused_with_one_line() {
         ("twice.txt", "1 2 3 4\n1 2 3 4\n", "twice.txt: wave (1, 2) is given twice"),
         ("real.txt", "1 2 3 4\n-1 -2 3 4\n", "real.txt: wave (1, 2) is 3 + 4i, and its opposite, -k, is 3 + 4i"),
         ("half.txt", "0.5 2 3 4\n", "half.txt: line 1: wave number 0.5 is not an integer"),
-        ("three.txt", "1 2 3\n", "three.txt: line 1 has 3 values, where kx, ky, Re and Im of a wave belong"),
+        ("three.txt", "1 2 3\n", "three.txt: line 1 has 3 values, but a wave has four: kx, ky, Re and Im"),
         ("flat.txt", "0 0 3 0\n", "flat.txt: all waves are zero"),
         ("far.txt", "5000 0 3 0\n", "far.txt: wave (5000, 0): kx and ky must be from -4096 to 4096"),
         ("nan.txt", "1 0 nan 0\n", "nan.txt: wave (1, 0): its amplitude is NaN"),

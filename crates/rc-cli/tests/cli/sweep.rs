@@ -165,10 +165,10 @@ fn incomplete_and_unlike_shards_are_not_merged() {
     });
     let cases: &[(&[&str], &str)] = &[
         (&["one"], "shard 2/2 is missing"),
-        (&["one", "one"], "is shard 1/2, as is one"),
-        (&["one", "other"], "loads[1] is 200000.0 in one and 300000.0 in other"),
+        (&["one", "one"], "is shard 1/2, and so is one; give each shard once"),
+        (&["one", "other"], "loads[1] of surface 1 is 200000.0 in one and 300000.0 in other"),
         (&["one", "third"], "belongs to another sweep"),
-        (&["one", "torn"], "torn: 1 rows of shard 2/2 are missing"),
+        (&["one", "torn"], "torn: shard 2/2 lacks 1 row"),
         (&["one", "nothing"], "nothing: no sweep"),
     ];
     for (folders, expected) in cases {

@@ -91,7 +91,7 @@ fn an_interrupt_leaves_the_table_of_the_rows_so_far() {
     let rows = table(&place.path("s")).len() - 1;
     assert!((3..8000).contains(&rows), "{rows} rows after an interrupt");
     assert_eq!(journal_lines(&place, "s"), 1 + rows, "table and journal differ");
-    assert!(message.contains(&format!("interrupted: {rows} of 8000 rows")), "{message}");
+    assert!(message.contains(&format!("interrupted with {rows} of 8000 rows in ")), "{message}");
     assert_eq!(place.names("s"), ["sweep.csv", "sweep.jsonl"]);
 }
 
@@ -118,24 +118,24 @@ fn settings_that_differ_are_named() {
     let map = map("sweep", "map.csv", &["--pressures", "1e5,2e5", "--quiet", "--out", "m"]);
     assert_solved(&place.run(&map));
     place.write("map.csv", "1e-6,2e-6,1e-6\n3e-6,2e-6,2e-6\n");
-    assert_refused(&place.run(&[&map[..], &["--resume"]].concat()), "surfaces[0].map.crc32 is ");
+    assert_refused(&place.run(&[&map[..], &["--resume"]].concat()), "map checksum of surface 1 is ");
 
     let run = |pressures: &str, more: &[&str]| {
         place.run(&[&TINY[..], &["--pressures", pressures, "--out", "s"], more].concat())
     };
     assert_solved(&run("1e5,2e5", &[]));
     let before = place.contents("s");
-    assert_refused(&run("1e5,2e5", &[]), "s: holds a sweep already; --resume goes on with it");
+    assert_refused(&run("1e5,2e5", &[]), "s: holds a sweep already; continue it with --resume");
     let cases: &[(&str, &[&str], &str)] = &[
-        ("1e5,3e5", &[], "surfaces[0].loads[1] is 200000.0 there and 300000.0 in this one"),
-        ("1e5,2e5", &["--seeds", "1..2"], "the number of surfaces is 1 there and 2 in this one"),
-        ("1e5,2e5", &["--seed", "2"], "surfaces[0].surface.seed is 1 there and 2 in this one"),
+        ("1e5,3e5", &[], "loads[1] of surface 1 is 200000.0 in the folder and 300000.0 now"),
+        ("1e5,2e5", &["--seeds", "1..2"], "the number of surfaces is 1 in the folder and 2 now"),
+        ("1e5,2e5", &["--seed", "2"], "seed of surface 1 is 1 in the folder and 2 now"),
         (
             "1e5,2e5",
             &["--energy-tolerance", "0.02"],
-            "surfaces[0].contact.energy_tolerance is 0.01 there and 0.02 in this one",
+            "energy_tolerance of surface 1 is 0.01 in the folder and 0.02 now",
         ),
-        ("1e5,2e5", &["--fields"], "fields is false there and true in this one"),
+        ("1e5,2e5", &["--fields"], "fields is false in the folder and true now"),
         ("1e5,2e5", &["--shard", "1/2"], "holds shard 1/1, not 1/2"),
     ];
     for (pressures, more, expected) in cases {

@@ -25,11 +25,11 @@ const FORMATS: &[(&str, Format)] = &[("main.xml", Format::X3p), ("index.xml", Fo
 
 /// Other archives by the names of members, with a description.
 const OTHERS: &[(&str, &str)] = &[
-    ("xl/workbook.xml", "a workbook of Excel; save the sheet as .csv"),
-    ("[Content_Types].xml", "a document of Office; save the numbers as .csv"),
-    ("META-INF/manifest.xml", "a document of OpenDocument; save the numbers as .csv"),
-    ("header.properties", "a measurement of JPK; export its heights with the program of the instrument"),
-    ("meta.yml", "a container of several maps; unpack it and give one of them"),
+    ("xl/workbook.xml", "an Excel workbook; save the sheet as .csv"),
+    ("[Content_Types].xml", "an Office document; save the numbers as .csv"),
+    ("META-INF/manifest.xml", "an OpenDocument file; save the numbers as .csv"),
+    ("header.properties", "a JPK measurement; export its heights with the instrument's program"),
+    ("meta.yml", "a container with several maps; unpack it and give one of them"),
 ];
 
 /// Names of the members of an archive. Names that are not text are omitted.

@@ -70,7 +70,7 @@ impl<'a> Wave<'a> {
         let Some(order) = order(bytes) else {
             let start = bytes.get(..2).unwrap_or_default();
             if matches!(start, [1..=3, 0] | [0, 1..=3]) {
-                let what = "a wave of a version before 5, which has one dimension,".to_owned();
+                let what = "a wave older than version 5, which has one dimension,".to_owned();
                 return Err(FormatError::Unsupported {
                     format: Format::Ibw,
                     what,

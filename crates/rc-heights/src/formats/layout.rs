@@ -19,7 +19,7 @@ pub enum Layout {
 
 /// An unknown name of a layout.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("'{name}' is not a layout of text; give matrix (each line is a row of the map) or xyz (each line is a point)")]
+#[error("'{name}' is not a layout; give matrix (each line is a row of the map) or xyz (each line is a point)")]
 pub struct LayoutError {
     /// The name as written.
     pub name: String,

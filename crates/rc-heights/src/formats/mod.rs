@@ -42,7 +42,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 pub use channel::ChannelInfo;
-pub(crate) use decode::decoded;
+pub(crate) use decode::{decoded, is_text};
 pub(crate) use fields::shown;
 pub use format::Format;
 pub use layout::{Layout, LayoutError};

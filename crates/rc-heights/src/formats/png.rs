@@ -27,7 +27,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
         (ColorType::Grayscale, BitDepth::Sixteen) => 1,
         (ColorType::GrayscaleAlpha, BitDepth::Sixteen) => 2,
         (colour, depth) => {
-            let what = format!("an image of {} bits, {colour:?},", depth as u8);
+            let what = format!("a {}-bit {colour:?} image", depth as u8);
             let cure = "save it as 16-bit grayscale; 8 bits are too few for heights";
             return Err(FormatError::Unsupported { format: Format::Png, what, cure });
         }

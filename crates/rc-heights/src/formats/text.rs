@@ -41,14 +41,15 @@ pub(super) fn channels(bytes: &[u8], layout: Option<Layout>) -> Channels<'_> {
 fn map(text: &str, heading: &Heading, layout: Option<Layout>) -> Result<HeightMap, FormatError> {
     if let ([_, _], None) = (heading.titles.as_slice(), layout) {
         let expected =
-            "but titles need three columns, x, y and height; remove the line of titles, or give the layout matrix"
+            "like titles of columns; titles are read only above columns x, y and height, so remove the line, or give layout = matrix"
                 .to_owned();
         return Err(FormatError::Columns { line: heading.first.saturating_sub(1), found: 2, expected });
     }
     let mut heights = rows(text, heading.first)?;
     if heights.grid().nx() <= 2 && layout.is_none() && !heading.is_of_rows() {
         let columns = if heights.grid().nx() == 1 { "one column" } else { "two columns" };
-        let (what, cure) = (format!("a text of {columns}, which is a profile,"), "layout = matrix reads it as a map");
+        let (what, cure) =
+            (format!("a text file with {columns}, which is a profile,"), "layout = matrix reads it as a map");
         return Err(FormatError::Unsupported { format: Format::Csv, what, cure });
     }
     let (sides, side_unit) = heading.sides(heights.grid().nx(), heights.grid().ny())?;
@@ -71,10 +72,13 @@ fn rows(text: &str, first: usize) -> Result<Field, FormatError> {
         if rows == 0 {
             columns = found;
         } else if found != columns {
-            let expected = format!("the lines before have {columns}");
+            let expected = format!("but the lines before have {columns}");
             return Err(FormatError::Columns { line, found, expected });
         }
         rows += 1;
+    }
+    if rows == 0 {
+        return Err(FormatError::NoNumbers { expected: "give a row of the map in each line, or a point x y z" });
     }
     Ok(field(Grid::new(columns, rows)?, values))
 }
@@ -136,19 +140,20 @@ mod tests {
     #[test]
     fn bad_text_is_refused_with_its_place() {
         let cases = [
-            ("1,2\n3\n", "line 2 has 1 values"),
+            ("1,2\n3\n", "line 2 has 1 value, but the lines before have 2"),
             ("1,2\n3,x\n", "line 2, value 2"),
             ("1,2\r3,x\r", "line 2, value 2"),
             ("1,2\r\n\r\n3,x\r\n", "line 3, value 2"),
             ("1 2 3\n4 5\r6\n", "line 2 has 2 values"),
             ("1,\n3,4\n", "line 1, value 2"),
             ("1;2\n3,5;4,,5\n", "line 2, value 2"),
-            ("x,z\n1,2\n3,4\n", "three columns"),
+            ("x,z\n1,2\n3,4\n", "line 1 has 2 values, like titles of columns"),
             ("1,2,3\n3,inf,5\n", "row 1, column 1"),
             ("nan,nan,nan\n", "all 3 points"),
             ("1,2\n3,4\n", "two columns, which is a profile"),
             ("1\n2\n", "layout = matrix"),
-            ("", "1 to"),
+            ("", "it has no numbers"),
+            ("# a remark\n", "it has no numbers"),
         ];
         for (text, expected) in cases {
             let error = crate::parse(text.as_bytes(), crate::Format::Csv).expect_err(text).to_string();

@@ -29,7 +29,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(invalid)?;
     let (width, height) = decoder.dimensions().map_err(invalid)?;
     if decoder.find_tag(Tag::Unknown(PARK)).map_err(invalid)?.is_some() {
-        let what = "the file of a Park AFM, whose picture is a thumbnail,".to_owned();
+        let what = "a file from a Park AFM, whose picture is a thumbnail,".to_owned();
         let cure = "export its heights as text or save it as .gwy with Gwyddion";
         return Err(FormatError::Unsupported { format: Format::Tiff, what, cure });
     }
@@ -39,11 +39,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
         ColorType::Gray(32) => 4,
         other => {
             let cure = "save it as 16-bit grayscale; 8 bits are too few for heights";
-            return Err(FormatError::Unsupported {
-                format: Format::Tiff,
-                what: format!("an image of {other:?}"),
-                cure,
-            });
+            return Err(FormatError::Unsupported { format: Format::Tiff, what: format!("a {other:?} image"), cure });
         }
     };
     let (needed, found) = (size * grid.len() as u64, (bytes.len() as u64).saturating_mul(MOST_INFLATION));

@@ -10,6 +10,7 @@ use super::lines::{data_lines, number, words};
 use crate::{Format, FormatError, HeightMap, Unit};
 
 use rc_core::Grid;
+use rc_core::quantity::digits;
 
 /// Maximum number of grid points for each point of the list.
 ///
@@ -110,7 +111,7 @@ fn on_grid(points: Vec<[f64; 3]>) -> Result<HeightMap, FormatError> {
     for [x, y, z] in points {
         let i = grid.index(axes[0].line(x)?, axes[1].line(y)?);
         if std::mem::replace(&mut seen[i], true) {
-            return Err(irregular(format!("two points are at x = {x:e}, y = {y:e}")));
+            return Err(irregular(format!("two points are at x = {}, y = {}", digits(x, 9), digits(y, 9))));
         }
         values[i] = z;
     }
@@ -125,7 +126,7 @@ fn points(text: &str, first: usize, order: [usize; 3]) -> Result<Vec<[f64; 3]>, 
         let (words, comma) = words(row);
         let words: Vec<&str> = words.take(4).collect();
         if words.len() != 3 {
-            let expected = "a point has three: x, y, z".to_owned();
+            let expected = "but a point has three: x, y, z".to_owned();
             return Err(FormatError::Columns { line, found: words.len(), expected });
         }
         let mut point = [0.0; 3];
@@ -166,9 +167,10 @@ impl Axis {
         let line = at.round();
         if (at - line).abs() > 0.1 {
             let Self { name, first, step, n } = self;
-            let message =
-                format!("{name} = {coordinate:e} is not one of the {n} values from {first:e} in steps of {step:e}");
-            return Err(irregular(message));
+            let [coordinate, first, step] = [coordinate, *first, *step].map(|x| digits(x, 9));
+            return Err(irregular(format!(
+                "{name} = {coordinate} is not one of the {n} values from {first} in steps of {step}"
+            )));
         }
         Ok((line as usize).min(self.n - 1))
     }

@@ -14,7 +14,7 @@ impl FromStr for Crop {
     fn from_str(text: &str) -> Result<Self, TreatError> {
         let unknown = || TreatError::Unknown {
             found: text.to_owned(),
-            expected: "a part of a map: square, or points as 512, 512x256 or 512x256+100+50",
+            expected: "a part of a map: square, or numbers of points such as 512, 512x256 or 512x256+100+50",
         };
         if text == "square" {
             return Ok(Self::Square);

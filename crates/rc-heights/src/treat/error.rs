@@ -51,7 +51,7 @@ pub enum TreatError {
         sides: [f64; 2],
     },
     /// A treatment needs every height, and points are missing.
-    #[error("{treatment}: {missing} points are missing; fill them first (fill)")]
+    #[error("{treatment}: needs a map without missing points (this one has {missing}); fill them first (fill)")]
     Missing {
         /// The treatment.
         treatment: Treatment,
@@ -80,7 +80,7 @@ pub enum TreatError {
     },
     /// The window leaves no part of the map unchanged.
     #[error(
-        "taper: must be above 0 and at most 0.5, not {0}; it is the part of a side that fades at each of its two ends"
+        "taper: must be above 0 and at most 0.5, not {0}; it is the fraction of a side that fades at each of its two ends"
     )]
     Taper(f64),
     /// The number of points is not valid for a grid.

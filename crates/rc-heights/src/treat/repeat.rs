@@ -15,7 +15,7 @@ impl FromStr for Repeat {
     fn from_str(text: &str) -> Result<Self, TreatError> {
         let unknown = || TreatError::Unknown {
             found: text.to_owned(),
-            expected: "square, or 1 to 16 copies along x and y as 3x4",
+            expected: "square, or two numbers of copies from 1 to 16, such as 3x4",
         };
         if text == "square" {
             return Ok(Self::Square);

@@ -118,7 +118,7 @@ fn an_archive_is_told_apart_by_its_members() {
     let dir = tempfile::tempdir().expect("a temporary folder");
     let stored = zip::CompressionMethod::Stored;
     let cases: [(&str, &[&str], &str); 3] = [
-        ("book.x3p", &["[Content_Types].xml", "xl/workbook.xml"], "a workbook of Excel"),
+        ("book.x3p", &["[Content_Types].xml", "xl/workbook.xml"], "an Excel workbook"),
         ("maps.zip", &["a.csv", "b.csv", "c.csv", "d.csv"], "a zip archive with a.csv, b.csv, c.csv, …; unpack it"),
         ("maps", &["not-main.xml"], "a zip archive with not-main.xml"),
     ];

@@ -291,6 +291,6 @@ fn treatments_that_need_every_height_say_so() {
         Treatment::Resample(Grid::square(4).expect("a grid")),
     ] {
         let error = apply(holed.clone(), &[treatment]).expect_err("a hole").to_string();
-        assert!(error.contains("1 points are missing") && error.contains("fill"), "{error}");
+        assert!(error.contains("without missing points (this one has 1)") && error.contains("fill"), "{error}");
     }
 }

@@ -59,7 +59,7 @@ pub enum AdaptiveError {
     },
     /// A border level on a grid that is not halved down to the base grid.
     #[error(
-        "a border level needs a grid that can be halved several times: a small number times a large power of 2 along both sides, as 1024 or 1536, not {grid}"
+        "a border level needs a grid that can be halved several times: a small number times a large power of 2 along both sides, such as 1024 or 1536, not {grid}"
     )]
     BorderOfGrid {
         /// The grid of the smallest elements.

@@ -17,7 +17,7 @@ pub enum GaussSeidelError {
     Problem(#[from] ProblemError),
     /// The elements of the mesh are not squares in a square cell.
     #[error(
-        "the mesh needs square elements in a square cell, not {grid} in one of 1 by {ratio}",
+        "the mesh needs square elements in a square cell, not {grid} elements in a cell of 1 by {ratio}",
         ratio = grid.cell_ratio()
     )]
     NotSquare {
@@ -32,7 +32,7 @@ pub enum GaussSeidelError {
     /// The estimate comes from a solution on a coarse grid, before any other work.
     #[error(
         "about {elements} elements in contact need {coefficients:.1e} coefficients for each sweep of the iteration, about {seconds_per_sweep:.0} s. \
-         At most {budget:.1e} are allowed; take a coarser grid, or another method"
+         At most {budget:.1e} are allowed; give a coarser grid, or another method"
     )]
     Budget {
         /// Estimated number of elements in contact.

@@ -42,7 +42,8 @@ impl FromStr for ByteSize {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("a size is a number of bytes, or one with a unit, as 500MB, 2GB or 1GiB, not '{text}'");
+        let wrong =
+            || format!("a size is a number of bytes, or one with a unit, such as 500MB, 2GB or 1GiB, not '{text}'");
         let text = text.trim();
         let end = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
         let (number, unit) = (text[..end].trim(), text[end..].to_ascii_lowercase());

@@ -178,11 +178,11 @@ fn tolerance(keys: &ContactKeys) -> Result<Tolerance, CliError> {
             Err(CliError::input("energy_tolerance: give it or tolerance, not both; omit one of them"))
         }
         (Some(ToleranceSpec::Relative(value)), None) if !is_part(value) => {
-            Err(CliError::input(format_args!("tolerance: must be above 0 and below 1, as 1e-6, not {value}")))
+            Err(CliError::input(format_args!("tolerance: must be above 0 and below 1, such as 1e-6, not {value}")))
         }
-        (None, Some(value)) if !is_part(value) => {
-            Err(CliError::input(format_args!("energy_tolerance: must be above 0 and below 1, as 1e-3, not {value}")))
-        }
+        (None, Some(value)) if !is_part(value) => Err(CliError::input(format_args!(
+            "energy_tolerance: must be above 0 and below 1, such as 1e-3, not {value}"
+        ))),
         (Some(tolerance), None) => Ok(tolerance.into()),
         (None, Some(value)) => Ok(Tolerance::Energy(value)),
         (None, None) => Ok(Tolerance::DEFAULT),
