@@ -117,7 +117,7 @@ pub(super) fn not_converged(grid: Grid, iterations: usize, certificate: &Certifi
 const REMEDY: &str =
     "; give a larger tolerance or a longer time limit; for other causes see Questions in the guide (docs/faq.md)";
 
-/// The message of [`not_converged`] for a solve that was stopped, so that its cause is known.
+/// The message of [`not_converged`] without the remedy, for a solve that was stopped.
 pub(super) fn of_stopped(message: &str) -> &str {
     message.strip_suffix(REMEDY).unwrap_or(message)
 }
