@@ -74,7 +74,7 @@ fn a_faulty_half_space_is_refused_before_the_solve() {
         assert!(is_named, "{eigenvalue}: {error:?}");
     }
     let error = error_with(&Broken::new(0.1, 1), Control::MeanPressure(1e-4)).expect("not the same when asked again");
-    let text = "the symbol of the kernel broken at the wave (1, 2) of 32 x 32 elements is 0.1; it must be the same each time it is asked";
+    let text = "the symbol of the kernel broken at the wave (1, 2) of 32 x 32 elements is 0.1; it must be the same each time it is evaluated";
     assert_eq!(error.to_string(), text);
 }
 

@@ -130,8 +130,8 @@ impl OwnKernel {
             return Ok(());
         };
         let message = format!(
-            "kernel: at short waves, the function is that of a half-space with an E* of {} Pa or further from e_star = {} Pa, which \
-             locates contact edges; give the E* of short waves, or correct the function",
+            "kernel: at short waves, the function is that of a half-space with E* = {} Pa, but e_star, which locates contact edges, is \
+             {} Pa; give the E* of short waves, or correct the function",
             digits(e_star / nearest, 5),
             digits(e_star, 5)
         );

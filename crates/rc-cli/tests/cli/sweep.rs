@@ -169,7 +169,7 @@ fn incomplete_and_unlike_shards_are_not_merged() {
         (&["one", "other"], "loads[1] of surface 1 is 200000.0 in one and 300000.0 in other"),
         (&["one", "third"], "belongs to another sweep"),
         (&["one", "torn"], "torn: shard 2/2 lacks 1 row"),
-        (&["one", "nothing"], "nothing: no sweep"),
+        (&["one", "nothing"], "nothing: not the folder of a sweep"),
     ];
     for (folders, expected) in cases {
         let args = [&["sweep", "merge"], *folders, &["--out", "merged"]].concat();
