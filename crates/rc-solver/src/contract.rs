@@ -27,7 +27,8 @@ const ROUNDING: f64 = 1e-12;
 /// Refuses a kernel whose symbol on `grid` is not that of an elastic half-space.
 ///
 /// The symbol must be finite, zero at the zero wave and positive elsewhere. It must be symmetric in kx and ky on a
-/// square grid, and the same each time it is evaluated. All waves of small grids are checked, and a sample on large grids.
+/// square grid, and the same each time it is evaluated. All waves of small grids are checked, and a sample
+/// on large grids.
 /// A kernel that says it is Love's half-space is not checked.
 pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), ProblemError> {
     if kernel.is_split_by_scale() {

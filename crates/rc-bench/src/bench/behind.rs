@@ -104,9 +104,8 @@ fn counts(all: &[Behind]) -> [usize; 3] {
 pub(super) fn count(results: &Results<'_>) -> String {
     let [n, slower, close] = counts(&comparisons(results));
     format!(
-        "[Benchmarks](docs/benchmarks.md#where-rc-is-not-ahead) has {n} comparisons of three kinds: to a stated error as in this \
-         table, with the settings that are best for the known result, and on equal meshes. In {slower} of them, the fastest peer is \
-         faster than rc. In {close} more, it takes less than twice our time.\n"
+        "[Benchmarks](docs/benchmarks.md#where-rc-is-not-ahead) has {n} comparisons, also with other errors and on equal meshes. \
+         In {slower} of them, the fastest peer is faster than rc. In {close} more, it takes less than twice our time.\n"
     )
 }
 
