@@ -161,7 +161,9 @@ impl Split {
         for (level, colour) in (0..self.params.n_levels).zip(COLOURS) {
             dotted(&mut chart, &line(&|r| self.part(level, r)), colour)?;
         }
-        dotted(&mut chart, &line(&|r| self.rest(r)), RED)?;
+        let base = |r: usize| self.rest(r).filter(|_| r.is_multiple_of(1 << self.params.n_levels));
+        chart.draw_series(LineSeries::new(line(&|r| self.rest(r)), RED.stroke_width(2)))?;
+        chart.draw_series(line(&base).into_iter().map(|at| Circle::new(at, 5, RED.filled())))?;
         write(&mut chart, (0.62, -0.75), Side::Right, "one element: the sum of all parts", BLACK)?;
         write(&mut chart, (0.05, -4.7), Side::Right, "(a)", BLACK)
     }
