@@ -10,7 +10,7 @@ use crate::parallel;
 
 /// Part of the cell in contact from which the uniform pressure's stiffness is computed.
 ///
-/// Below it, the present pressure gives as large a stiffness or a larger one. The application of L would gain nothing.
+/// Below it, the application of L gained nothing on rough surfaces.
 const LARGE_CONTACT: f64 = 0.7;
 
 impl Descent<'_> {
