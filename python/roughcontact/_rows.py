@@ -129,7 +129,7 @@ def by_workers(workers: Workers, jobs: list[Job]) -> Iterator[tuple[int, Found]]
             rounds = rounds + 1 if len(unfinished) == len(waiting) else 0
             if cause is not None and (rounds == _ROUNDS or not pool.renew(cause)):
                 message = (
-                    f"{len(unfinished)} rows are not solved, because workers died while they solved them: {cause!r}; "
+                    f"{len(unfinished)} of the rows could not be solved, because workers died while they solved them: {cause!r}; "
                     "if memory was short, use fewer workers or a coarser grid"
                 )
                 raise RuntimeError(message) from cause

@@ -229,7 +229,7 @@ def test_rows_whose_worker_ends_are_solved_again_but_not_for_ever(tmp_path):
     assert rc.sweep(**SMALL, executor=losing)["penetration"].tolist() == alone["penetration"].tolist()
     assert set(losing.counts.values()) == {3}
     # A row that ends its worker each time keeps no other from being solved.
-    with pytest.raises(RuntimeError, match=r"1 rows are not solved, .*KilledWorker\('a worker'\)") as given_up:
+    with pytest.raises(RuntimeError, match=r"1 of the rows could not be solved, .*KilledWorker\('a worker'\)") as given_up:
         rc.sweep(**SMALL, executor=Losing(100, rows={1}), out=tmp_path / "s")
     assert given_up.value.table["control_value"].tolist() == [1e5, 1e5, 2e5]
     assert finished(tmp_path / "s") == 3
@@ -254,7 +254,7 @@ def test_maps_are_recognised_by_their_values(heights, tmp_path, command):
     table = rc.sweep(rc.HeightMap(heights), **keys)
     again = rc.sweep(heights.copy(order="F"), **keys, resume=True, executor=Refusing())
     assert again.rows == table.rows and "seed" not in table.columns
-    with pytest.raises(ValueError, match="holds another sweep: map checksum of surface 1 is "):
+    with pytest.raises(ValueError, match="holds another sweep: checksum of the file of surface 1 is "):
         rc.sweep(heights + 1e-9, **keys, resume=True)
     # A map in a file is that of the command line.
     np.save(tmp_path / "map.npy", heights)

@@ -109,13 +109,15 @@ impl From<&clap::Error> for CliError {
         let before_usage = text.split("\n\nUsage:").next().unwrap_or_default();
         let before_usage = before_usage.split("\n\nFor more information").next().unwrap_or_default();
         let message = in_words(before_usage.trim_start_matches("error: "));
-        let tip = message.contains("tip: ");
         Self::input(match error.kind() {
             ErrorKind::MissingRequiredArgument => {
                 let missing: Vec<&str> = message.lines().skip(1).map(str::trim).collect();
-                format!("required arguments are missing: {}", missing.join(" "))
+                let be = if missing.len() == 1 { "argument is" } else { "arguments are" };
+                format!("required {be} missing: {}", missing.join(", "))
             }
-            ErrorKind::InvalidSubcommand if !tip => format!("{message}; rc --help lists the commands"),
+            ErrorKind::InvalidSubcommand if !message.contains("tip: ") => {
+                format!("{message}; rc --help lists the commands")
+            }
             // A flag that does not exist is hardly meant as a value.
             ErrorKind::UnknownArgument if message.contains("to pass '") => {
                 let first = message.lines().next().unwrap_or_default();

@@ -33,12 +33,13 @@ pub(crate) fn wrong_value(error: CliError) -> PyErr {
 }
 
 /// Phrases of the command line about its flags, and their replacements in Python.
-const SAID_OF_FLAGS: [(&str, &str); 6] = [
+const SAID_OF_FLAGS: [(&str, &str); 7] = [
     ("rc surface --fill laplace fills", "roughcontact.prepare(heights, fill=\"laplace\") fills"),
     ("give --heights FILE or --spectrum FILE", "give heights or spectrum"),
     ("give --heights FILE", "give heights"),
     ("the --out folder", "the folder"),
     ("--method uniform", "method=\"uniform\""),
+    ("--layout matrix", "layout=\"matrix\""),
     ("--resume", "resume=True"),
 ];
 
@@ -58,12 +59,16 @@ fn in_keywords(message: &str) -> String {
 
 /// The message of a wrong value in the words of Python.
 fn in_words(message: &str) -> String {
-    const WORDS: [(&str, &str); 4] = [
+    const WORDS: [(&str, &str); 3] = [
         ("must be a number without quotes,", "must be a number,"),
         ("must be text in quotes,", "must be text,"),
         ("must be true or false,", "must be True or False,"),
-        ("not true", "not True"),
     ];
     let text = WORDS.iter().fold(message.to_owned(), |text, (said, here)| text.replace(said, here));
-    text.strip_suffix("not false").map_or_else(|| text.clone(), |start| format!("{start}not False"))
+    for (said, here) in [(", not true", ", not True"), (", not false", ", not False")] {
+        if let Some(start) = text.strip_suffix(said) {
+            return format!("{start}{here}");
+        }
+    }
+    text
 }

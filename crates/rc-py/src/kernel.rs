@@ -46,7 +46,7 @@ impl OwnKernel {
     /// mirror images of some waves. The function returns one displacement (m) for each wave, for a pressure of 1 Pa.
     ///
     /// # Errors
-    /// When the function raises, returns another shape, or is not symmetric.
+    /// When the function raises, returns another shape or a value that is not positive and finite, or is not symmetric.
     pub(crate) fn new(symbol: &Bound<'_, PyAny>, grid: Grid, units: Units) -> PyResult<Self> {
         let waves = Waves { grid, per_wave: units.cell().sides().map(|side| TAU / side) };
         let (own, mirrored) = (waves.all(), waves.mirrored());
@@ -54,12 +54,12 @@ impl OwnKernel {
             let number = |wave: &[i64; 2]| wave[axis] as f64 * waves.per_wave[axis];
             own.iter().map(number).chain(mirrored.iter().map(|(_, wave)| number(wave))).collect::<Vec<f64>>()
         });
-        let wave_numbers: Vec<[f64; 2]> = kx.iter().copied().zip(ky.iter().copied()).map(Into::into).collect();
         let mut found = call(symbol, kx, ky)?;
-        if let Some((value, [kx, ky])) =
-            found.iter().zip(&wave_numbers).find(|(value, _)| !(**value > 0.0 && value.is_finite()))
-        {
-            let [value, kx, ky] = [*value, *kx, *ky].map(|x| digits(x, 4));
+        if let Some(i) = found.iter().position(|value| !(*value > 0.0 && value.is_finite())) {
+            let wave = own.get(i).or_else(|| mirrored.get(i - own.len()).map(|(_, wave)| wave)).copied();
+            let [kx, ky] = wave.unwrap_or_default();
+            let at = [kx as f64 * waves.per_wave[0], ky as f64 * waves.per_wave[1]];
+            let [value, kx, ky] = [found[i], at[0], at[1]].map(|x| digits(x, 4));
             return Err(bad_input(format_args!(
                 "kernel: the function returned {value} m at kx = {kx}, ky = {ky} rad/m; it must be positive and finite"
             )));
@@ -89,7 +89,6 @@ impl OwnKernel {
         waves: &Waves,
         mirrored: impl Iterator<Item = (([usize; 2], [i64; 2]), f64)>,
     ) -> PyResult<()> {
-        // A value that is not a number passes here, since the solver refuses it.
         let differ = |a: f64, b: f64| (a - b).abs() > MIRROR_ERROR * a.abs();
         let refuse = |[a, b]: [[i64; 2]; 2], why: &str| {
             let [a, b] = [a, b].map(|[kx, ky]| {
@@ -126,11 +125,11 @@ impl OwnKernel {
         let short = waves.all().into_iter().filter(|&wave| number(wave) >= outer);
         let ratio = |wave: [i64; 2]| PI * number(wave) * self.at(wave[0] as usize, wave[1] as usize);
         let nearest = short.map(ratio).min_by(|a, b| a.ln().abs().total_cmp(&b.ln().abs()));
-        let Some(nearest) = nearest.filter(|ratio| *ratio > 0.0 && (ratio - 1.0).abs() > HALF_SPACE_ERROR) else {
+        let Some(nearest) = nearest.filter(|ratio| (ratio - 1.0).abs() > HALF_SPACE_ERROR) else {
             return Ok(());
         };
         let message = format!(
-            "kernel: at short waves, the function is that of a half-space with E* = {} Pa, but e_star, which locates contact edges, is \
+            "kernel: at short waves, the function is nearest to a half-space with E* = {} Pa, but e_star, which locates contact edges, is \
              {} Pa; give the E* of short waves, or correct the function",
             digits(e_star / nearest, 5),
             digits(e_star, 5)

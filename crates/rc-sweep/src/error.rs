@@ -19,7 +19,7 @@ pub enum SweepError {
     #[error(transparent)]
     File(#[from] FileError),
     /// A row could not be appended to the journal. The rows before it are stored.
-    #[error("cannot write {}: {cause}; {} before it kept", path.display(), count(*kept, "row"))]
+    #[error("cannot write {}: {cause}; the earlier rows are kept ({kept})", path.display())]
     Append {
         /// Path of the journal.
         path: PathBuf,

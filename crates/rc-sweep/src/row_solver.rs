@@ -57,7 +57,7 @@ pub struct Workers {
 #[non_exhaustive]
 pub enum RunError<E> {
     /// Rows were refused. All other rows are solved.
-    #[error("{error}; {} could not be solved, {kept} kept", count(*missing, "row"))]
+    #[error("{error}; {} could not be solved, and the other {kept} are kept", count(*missing, "row"))]
     Refused {
         /// Error of the first refused row.
         error: E,

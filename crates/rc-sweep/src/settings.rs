@@ -36,7 +36,12 @@ fn find_difference(path: &str, [there, here]: [&Value; 2], places: [&str; 2]) ->
 fn in_words(path: &str) -> String {
     let of_surface = path.strip_prefix("surfaces[").and_then(|rest| rest.split_once("]."));
     let Some((index, key)) = of_surface else { return path.to_owned() };
-    let name = if key == "map.crc32" { "map checksum" } else { key.rsplit('.').next().unwrap_or(key) };
+    let load = key.strip_prefix("loads[").and_then(|rest| rest.strip_suffix(']')?.parse::<usize>().ok());
+    let name = match load {
+        Some(load) => format!("load {}", load + 1),
+        None if key == "map.crc32" => "checksum of the file".to_owned(),
+        None => key.rsplit('.').next().unwrap_or(key).to_owned(),
+    };
     index.parse::<usize>().map_or_else(|_| path.to_owned(), |i| format!("{name} of surface {}", i + 1))
 }
 

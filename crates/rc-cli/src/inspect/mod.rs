@@ -87,7 +87,7 @@ pub fn result(folder: &Path) -> Result<String, CliError> {
 /// # Errors
 /// [`CliError::Input`] for a map that has no statistics.
 pub fn height_map(name: &Path, map: HeightMap, sides: [Option<f64>; 2]) -> Result<String, CliError> {
-    Ok(to_json(&Inspected::new(name, map, sides)?.record))
+    Ok(to_json(&Inspected::new(name, map, &ReadParams::default(), sides)?.record))
 }
 
 /// The text of `rc surface --json` for a surface in a cell of side `side` (m).
@@ -125,8 +125,8 @@ struct Inspected {
 }
 
 impl Inspected {
-    fn new(path: &Path, map: HeightMap, given: [Option<f64>; 2]) -> Result<Self, CliError> {
-        heights::check_finite(path, &map.heights)?;
+    fn new(path: &Path, map: HeightMap, params: &ReadParams, given: [Option<f64>; 2]) -> Result<Self, CliError> {
+        heights::check_heights(path, &map.heights, params)?;
         if map.heights.max() <= map.heights.min() {
             let message =
                 format_args!("all heights are {}; a flat surface has no statistics", digits(map.heights.max(), 6));
@@ -175,7 +175,7 @@ fn list(channels: &[ChannelInfo]) -> String {
 fn statistics(args: &InspectArgs) -> Result<(SurfaceRecord, String), CliError> {
     let params = ReadParams { channel: args.channel.clone(), layout: args.layout };
     let map = heights::read(&args.file, &params, Scales { unit: args.unit, height_scale: args.height_scale })?;
-    let Inspected { heights, record, note } = Inspected::new(&args.file, map, [args.cell, args.cell_y])?;
+    let Inspected { heights, record, note } = Inspected::new(&args.file, map, &params, [args.cell, args.cell_y])?;
     draw(args, &heights, &record)?;
     Ok((record, note))
 }

@@ -123,29 +123,33 @@ fn spectrum_lines(s: &SurfaceRecord) -> String {
 }
 
 /// Statistics of a pressure field, with its distribution.
-#[must_use]
 ///
 /// `elements` are those of the solve along x and y. A coarser grid has means over blocks of them.
+#[must_use]
 pub(crate) fn pressure(statistics: &PressureStatistics, elements: [usize; 2]) -> String {
     let s = statistics;
     let [nx, ny] = s.grid;
     let percent = digits(100.0 * s.area_fraction_cells, 4);
-    let lines = [
-        if s.grid == elements {
-            ("grid", format!("{nx} x {ny} elements"))
-        } else {
-            ("grid", format!("{nx} x {ny} means over blocks of {} x {} elements", elements[0] / nx, elements[1] / ny))
-        },
-        if s.grid == elements {
-            ("contact area", format!("{percent} % of the elements"))
-        } else {
-            ("touched blocks", format!("{percent} %, those with an element in contact"))
-        },
-        ("mean pressure", engineering(s.mean_pressure, "Pa")),
+    let of_elements = [
+        ("grid", format!("{nx} x {ny} elements")),
+        ("contact area", format!("{percent} % of the elements")),
         ("mean in contact", engineering(s.mean_contact_pressure, "Pa")),
+    ];
+    let of_blocks = [
+        ("grid", format!("{nx} x {ny} means over blocks of {} x {} elements", elements[0] / nx, elements[1] / ny)),
+        ("touched blocks", format!("{percent} %, those with an element in contact")),
+        ("mean in touched", engineering(s.mean_contact_pressure, "Pa")),
+    ];
+    let (title, [grid, area, mean_in_contact]) =
+        if s.grid == elements { ("contact pressure", of_elements) } else { ("block pressure  ", of_blocks) };
+    let lines = [
+        grid,
+        area,
+        ("mean pressure", engineering(s.mean_pressure, "Pa")),
+        mean_in_contact,
         ("rms, max pressure", format!("{}, {}", engineering(s.rms_pressure, "Pa"), engineering(s.max_pressure, "Pa"))),
     ];
-    aligned(&lines) + "\n  contact pressure    density\n" + &bars(&s.distribution, "Pa")
+    aligned(&lines) + &format!("\n  {title}    density\n") + &bars(&s.distribution, "Pa")
 }
 
 /// About a dozen rows of the spectrum, at equal ratios of the wavenumber.

@@ -20,12 +20,13 @@ use crate::scene::keys::{ContactKeys, EXAMPLE, RunKeys, Scene, SurfaceKeys};
 pub fn read(path: &Path) -> Result<Scene, CliError> {
     let bytes = std::fs::read(path)
         .map_err(|cause| CliError::in_file(path, format_args!("cannot read this scene file: {cause}")))?;
-    let text = String::from_utf8(bytes).map_err(|_| {
-        let file = path.display();
-        CliError::in_file(
-            path,
-            format_args!("not a scene file, which is text (TOML); for a height map give --heights {file}"),
-        )
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let message = if error.as_bytes().contains(&0) {
+            format!("not a scene file, which is text (TOML); for a height map give --heights {}", path.display())
+        } else {
+            "not text in UTF-8; save it as UTF-8".to_owned()
+        };
+        CliError::in_file(path, message)
     })?;
     let scene = parse(&text).map_err(|message| CliError::in_file(path, message))?;
     Ok(scene.relative_to(path.parent().unwrap_or(Path::new(""))))
@@ -84,7 +85,7 @@ pub fn to_toml(group: &impl Serialize) -> String {
 ///
 /// Three passes take the place of serde's `flatten`, which would lose the line of a wrong value.
 fn group<T: for<'de> Deserialize<'de>>(text: &str) -> Result<T, String> {
-    toml::from_str(text).map_err(|error| at_line(text, &error))
+    toml::from_str(text).map_err(|error| at_value(text, &error))
 }
 
 /// One group of keys from a table.
@@ -120,20 +121,32 @@ fn unknown_key(key: &str, known: &[String]) -> String {
 
 fn at_line(text: &str, error: &toml::de::Error) -> String {
     let message = error.message();
-    let Some(span) = error.span() else { return message.to_owned() };
+    match error.span() {
+        Some(span) => format!("line {}: {message}", line_of(text, span.start)),
+        None => message.to_owned(),
+    }
+}
+
+/// The message about a value of the wrong type, with its line and key.
+fn at_value(text: &str, error: &toml::de::Error) -> String {
+    let said = in_words(error.message());
+    let Some(span) = error.span() else { return said };
     let number = line_of(text, span.start);
-    let said = in_words(message);
-    // Only errors of values have other words, and the key is before the value.
     let line = text.lines().nth(number - 1).unwrap_or_default();
-    let key = line.split_once('=').filter(|_| said != message).map(|(key, _)| format!("{}: ", key.trim()));
-    format!("line {number}: {}{said}", key.unwrap_or_default())
+    match line.split_once('=') {
+        Some((key, _)) => format!("line {number}: {}: {said}", key.trim()),
+        None => format!("line {number}: {said}"),
+    }
 }
 
 /// The message of serde about a value, without the names of Rust types.
 ///
 /// `invalid type: string "1e5", expected f64` becomes `must be a number, not "1e5"`. Other messages stay as they are.
 fn in_words(message: &str) -> String {
-    let Some((found, expected)) = message.split_once(", expected ") else { return message.to_owned() };
+    if message == "wanted string or table" {
+        return "must be text in quotes".to_owned();
+    }
+    let Some((found, expected)) = message.rsplit_once(", expected ") else { return message.to_owned() };
     if let Some(name) = found.strip_prefix("unknown variant ") {
         // The name of a kernel that is a function appears in results only.
         let names = expected.split('`').skip(1).step_by(2).filter(|name| *name != "own");
@@ -148,11 +161,16 @@ fn in_words(message: &str) -> String {
     let expected = match expected {
         "usize" | "u64" | "u32" => "a whole number of at least 0",
         "f64" => "a number without quotes",
-        "a string" => "text in quotes",
+        "a string" | "path string" | "string only" => "text in quotes",
         "a boolean" => "true or false",
         other => other,
     };
-    format!("must be {expected}, not {value}")
+    match &*value {
+        "unit variant" => format!("must be {expected}"),
+        "sequence" => format!("must be {expected}, not a list"),
+        "map" => format!("must be {expected}, not a table"),
+        value => format!("must be {expected}, not {value}"),
+    }
 }
 
 fn line_of(text: &str, offset: usize) -> usize {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rc_core::{Field, Grid, PeriodicCell};
-use rc_heights::{Format, HeightMap, ReadParams, SAME_LENGTH, Scales};
+use rc_heights::{Format, HeightMap, Layout, ReadParams, SAME_LENGTH, Scales};
 
 use super::as_read::AsRead;
 use crate::error::CliError;
@@ -25,6 +25,14 @@ pub fn read(path: &Path, params: &ReadParams, scales: Scales) -> Result<HeightMa
 /// # Errors
 /// [`CliError::Input`] with row, column and value.
 pub(crate) fn check_finite(path: &Path, field: &Field) -> Result<(), CliError> {
+    check_heights(path, field, &ReadParams { layout: Some(Layout::Matrix), ..ReadParams::default() })
+}
+
+/// Refuses a height map with `NaN` or an infinite value. `params` are those that it was read with.
+///
+/// # Errors
+/// [`CliError::Input`] with row, column and value.
+pub(crate) fn check_heights(path: &Path, field: &Field, params: &ReadParams) -> Result<(), CliError> {
     let nx = field.grid().nx();
     match field.values().iter().position(|value| !value.is_finite()) {
         None => Ok(()),
@@ -32,16 +40,18 @@ pub(crate) fn check_finite(path: &Path, field: &Field) -> Result<(), CliError> {
             let (row, column, value) = (i / nx, i % nx, field.values()[i]);
             let missing = field.values().iter().filter(|value| value.is_nan()).count();
             let place = format!("row {row}, column {column} (from 0) is {value}; heights must be finite");
-            let of_all = format!("{missing} of {}", field.grid().len());
+            let filled =
+                format!("rc surface --fill laplace fills the missing points ({missing} of {})", field.grid().len());
+            let guessed = params.layout.is_none() && rc_heights::format_of(path) == Ok(Format::Xyz);
             Err(CliError::in_file(
                 path,
                 match missing {
                     0 => place,
-                    _ if rc_heights::format_of(path) == Ok(Format::Xyz) => format!(
-                        "as a list of points x, y, z it lacks {of_all} heights; rc surface --fill laplace fills them, or give \
-                     --layout matrix if each line is a row of the map"
+                    _ if guessed => format!(
+                        "{place}; the file was read as a list of points x, y, z, so give --layout matrix if each line is a row of \
+                         the map; otherwise {filled}"
                     ),
-                    _ => format!("{place}; rc surface --fill laplace fills the missing points ({of_all})"),
+                    _ => format!("{place}; {filled}"),
                 },
             ))
         }

@@ -157,7 +157,7 @@ impl SurfaceSetup {
     /// scene's.
     pub fn of_map(&self, path: &Path, map: HeightMap, expected: Option<Grid>) -> Result<LoadedSurface, CliError> {
         heights::sides(path, map.sides, [Some(self.cell.side()), self.keys.cell_y])?;
-        heights::check_finite(path, &map.heights)?;
+        heights::check_heights(path, &map.heights, &self.keys.read_params())?;
         let range = [map.heights.min(), map.heights.max()];
         let (heights, as_read) = heights::in_cell(path, map.heights, self.cell)?;
         let grid = heights.grid();

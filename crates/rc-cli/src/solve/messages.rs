@@ -27,14 +27,20 @@ pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &Conta
             Ok(()) => CliError::input(format_args!("memory_limit: {error}")),
         },
         SolveError::AreaError { wanted, reached, side } => CliError::input(format_args!(
-            "area_error: {} % cannot be reached; with {side} elements per side, the most that are possible, the error is {} %; give at least this",
+            "area_error: {} % cannot be reached; with {side} elements per side, the most that it tries, the error is {} %; give at least this",
             digits(100.0 * wanted, 2),
-            digits(100.0 * reached, 2)
+            digits(rounded_up(100.0 * reached), 2)
         )),
         SolveError::NoWaves => CliError::input(format_args!("area_error: {error}")),
         SolveError::Grid(_) | SolveError::TooCoarse { .. } => CliError::input(format_args!("grid: {error}")),
         other => CliError::input(other),
     }
+}
+
+/// `value` with two significant digits, not below `value`.
+fn rounded_up(value: f64) -> f64 {
+    let unit = 10_f64.powf(value.log10().floor() - 1.0);
+    (value / unit).ceil() * unit
 }
 
 /// The key that gave the tolerance.
@@ -95,7 +101,9 @@ fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
                 None => " needs its base grid, which alone".into(),
             };
             let what = format!("the adaptive method on {grid} elements{part}");
-            let remedy = |_| "; give a coarser grid".to_owned();
+            // The base grid follows from the surface, whatever the grid.
+            let remedy =
+                |_| if area_percent.is_some() { "; give a coarser grid" } else { "; allow more memory" }.to_owned();
             match budget.check(&what, 1e6 * *needed as f64, remedy) {
                 Err(refused) => refused.into(),
                 Ok(()) => CliError::input(format_args!("memory_limit: {error}")),

@@ -142,7 +142,7 @@ fn lines(mean: &EnsembleMean) -> String {
     let levels: String = [names].into_iter().chain(mean.levels.iter().map(cells)).map(columns).collect();
     let part = digits(mean.cost / mean.cost_of_plain_mean, 2);
     format!(
-        "{head}{levels}  cost (elements times applications of the operator): {part} of the estimated cost on the finest grid alone\n"
+        "{head}{levels}  cost (elements times applications of the operator): {part} times the estimated cost on the finest grid alone\n"
     )
 }
 

@@ -85,7 +85,7 @@ pub(super) fn out_of_time(limit: TimeLimit, missing: usize, n_rows: usize) -> Cl
 pub(super) fn mean_out_of_time(limit: Option<TimeLimit>, kept: usize) -> CliError {
     let after = limit.map_or_else(String::new, |limit| format!(" after {limit}"));
     CliError::NotConverged(format!(
-        "time_limit: the mean is not reached yet{after}; --resume continues after the {} so far",
+        "time_limit: the mean is not reached yet{after}, with {} so far; --resume continues",
         count(kept, "solve")
     ))
 }

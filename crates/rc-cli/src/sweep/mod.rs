@@ -79,7 +79,11 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
             let before = if n_before > 0 { format!(" ({n_before} kept from before)") } else { String::new() };
             let table = table.display();
             let finished = kept.rows().len();
-            let rows = if finished < n_rows { format!("{finished} of {n_rows} rows") } else { count(n_rows, "row") };
+            let rows = if finished < n_rows {
+                format!("{finished} of {}", count(n_rows, "row"))
+            } else {
+                count(n_rows, "row")
+            };
             let threads = count(threads, "thread");
             terminal::print(&format!("{rows}{before} in {seconds} s, {threads}\n\nwritten to {table}\n"))?;
         }

@@ -208,3 +208,78 @@ fn an_output_folder_that_cannot_be_is_refused_before_any_work() {
     assert_eq!(place.bytes("file"), b"keep");
     assert_eq!(place.names("."), ["file"]);
 }
+
+#[test]
+fn a_wrong_value_in_a_scene_file_is_named_with_its_line_and_key() {
+    let place = Place::new();
+    let cases = [
+        ("waves = 8.5", "line 2: waves: must be a whole number of at least 0, not 8.5"),
+        ("rms = \"1e-6\"", "line 2: rms: must be a number without quotes, not \"1e-6\""),
+        (
+            "method = \"addaptive\"",
+            "line 2: method: must be 'adaptive' or 'uniform' or 'gauss-seidel', not 'addaptive'",
+        ),
+        ("kernel = 3", "line 2: kernel: must be text in quotes"),
+        ("heights = 3", "line 2: heights: must be text in quotes, not 3"),
+        ("rms = [1e-6]", "line 2: rms: must be a number without quotes, not a list"),
+        ("area_error = \"x\"", "line 2: area_error: a fraction is a number above 0 and below 1"),
+        ("threads = \"a, expected b\"", "line 2: threads: must be a whole number of at least 0, not \"a, expected b\""),
+    ];
+    for (line, expected) in cases {
+        place.write("scene.toml", format!("# a scene\n{line}\n"));
+        assert_refused(&place.run(&["solve", "scene.toml", "--pressure", "1e5"]), expected);
+    }
+    place.write("latin.toml", b"waves = 8 # \xb5m\n");
+    assert_refused(&place.run(&["solve", "latin.toml"]), "latin.toml: not text in UTF-8; save it as UTF-8");
+    place.write("map.npy", npy("<f8", false, "(4, 4)", &f8(&bumps(4))));
+    assert_refused(
+        &place.run(&["solve", "map.npy"]),
+        "map.npy: not a scene file, which is text (TOML); for a height map give",
+    );
+}
+
+#[test]
+fn of_several_scenes_the_one_with_a_bad_value_is_named() {
+    let place = Place::new();
+    place.write("good.toml", "waves = 8\ngrid = 64\n");
+    place.write("bad.toml", "waves = 8\ngrid = 64\nhurst = 3\n");
+    let sweep = ["sweep", "good.toml", "bad.toml", "--pressures", "1e5,2e5", "--out", "s"];
+    assert_refused(&place.run(&sweep), "scene bad: hurst: must be above 0 and at most 1, not 3");
+}
+
+#[test]
+fn a_file_of_three_columns_that_was_read_as_points_says_so() {
+    let place = Place::new();
+    place.write("map.txt", "1 2 3\n4 5 6\n7 8 9\n");
+    let guessed = "read as a list of points x, y, z, so give --layout matrix if each line is a row of the map";
+    assert_refused(&place.run(&["inspect", "map.txt"]), guessed);
+    place.write("hole.txt", "1 2 3\n4 nan 6\n7 8 9\n");
+    let given = place.run(&["inspect", "hole.txt", "--layout", "matrix"]);
+    assert_refused(&given, "row 1, column 1 (from 0) is NaN; heights must be finite; rc surface --fill laplace fills");
+}
+
+#[test]
+fn remedies_are_possible() {
+    let place = Place::new();
+    let cases: &[(&[&str], &str)] = &[
+        (&["man"], "required argument is missing: --out <DIR>"),
+        (&["sweep", "merge"], "required arguments are missing: --out <DIR>, <DIR>..."),
+        (&["prepare"], "unrecognized subcommand 'prepare'; rc --help lists the commands"),
+        (&["surface", "--method", "uniform"], "unexpected argument '--method' found; --help lists the flags"),
+        (&["solve", "--pressure", "1e5", "--grid", "64x"], "512x256, not '64x'"),
+        (
+            &["solve", "--pressure", "1e5", "--memory-limit", "12MB"],
+            "more than the limit of 12 MB; give a coarser grid",
+        ),
+        (&["solve", "--pressure", "1e5", "--memory-limit", "1kB"], "more than the limit of 1 kB; allow more memory"),
+    ];
+    for (args, expected) in cases {
+        assert_refused(&place.run(args), expected);
+    }
+    place.write("file", "text");
+    for command in ["plot", "export", "report"] {
+        let format: &[&str] = if command == "export" { &["--vtk"] } else { &[] };
+        let output = place.run(&[&[command, "file"], format].concat());
+        assert_refused(&output, "file: is a file; give the folder that it is in");
+    }
+}

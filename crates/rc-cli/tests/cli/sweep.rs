@@ -166,9 +166,9 @@ fn incomplete_and_unlike_shards_are_not_merged() {
     let cases: &[(&[&str], &str)] = &[
         (&["one"], "shard 2/2 is missing"),
         (&["one", "one"], "is shard 1/2, and so is one; give each shard once"),
-        (&["one", "other"], "loads[1] of surface 1 is 200000.0 in one and 300000.0 in other"),
+        (&["one", "other"], "load 2 of surface 1 is 200000.0 in one and 300000.0 in other"),
         (&["one", "third"], "belongs to another sweep"),
-        (&["one", "torn"], "torn: shard 2/2 lacks 1 row"),
+        (&["one", "torn"], "torn: shard 2/2 lacks 1 row;"),
         (&["one", "nothing"], "nothing: not the folder of a sweep"),
     ];
     for (folders, expected) in cases {

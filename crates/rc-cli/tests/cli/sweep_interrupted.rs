@@ -118,7 +118,7 @@ fn settings_that_differ_are_named() {
     let map = map("sweep", "map.csv", &["--pressures", "1e5,2e5", "--quiet", "--out", "m"]);
     assert_solved(&place.run(&map));
     place.write("map.csv", "1e-6,2e-6,1e-6\n3e-6,2e-6,2e-6\n");
-    assert_refused(&place.run(&[&map[..], &["--resume"]].concat()), "map checksum of surface 1 is ");
+    assert_refused(&place.run(&[&map[..], &["--resume"]].concat()), "checksum of the file of surface 1 is ");
 
     let run = |pressures: &str, more: &[&str]| {
         place.run(&[&TINY[..], &["--pressures", pressures, "--out", "s"], more].concat())
@@ -127,7 +127,7 @@ fn settings_that_differ_are_named() {
     let before = place.contents("s");
     assert_refused(&run("1e5,2e5", &[]), "s: holds a sweep already; continue it with --resume");
     let cases: &[(&str, &[&str], &str)] = &[
-        ("1e5,3e5", &[], "loads[1] of surface 1 is 200000.0 in the folder and 300000.0 now"),
+        ("1e5,3e5", &[], "load 2 of surface 1 is 200000.0 in the folder and 300000.0 now"),
         ("1e5,2e5", &["--seeds", "1..2"], "the number of surfaces is 1 in the folder and 2 now"),
         ("1e5,2e5", &["--seed", "2"], "seed of surface 1 is 1 in the folder and 2 now"),
         (

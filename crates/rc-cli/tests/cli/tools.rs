@@ -200,3 +200,14 @@ fn help_is_no_error() {
         assert_solved(&place.run(args));
     }
 }
+
+#[test]
+fn stored_means_over_blocks_are_named_as_such() {
+    let place = Place::new();
+    assert_solved(&place.run(&small("1e5", &["--output-grid", "32", "--out", "coarse"])));
+    let inspected = text(&place.run(&["inspect", "coarse"]).stdout);
+    for expected in ["32 x 32 means over blocks of 4 x 4 elements", "touched blocks", "block pressure"] {
+        assert!(inspected.contains(expected), "no '{expected}' in: {inspected}");
+    }
+    assert!(!inspected.contains("% of the elements"), "{inspected}");
+}
