@@ -99,6 +99,11 @@ mod tests {
     use super::*;
 
     #[test]
+    fn only_one_thing_has_no_plural() {
+        assert_eq!([0, 1, 2].map(|n| count(n, "row")), ["0 rows", "1 row", "2 rows"]);
+    }
+
+    #[test]
     fn quantities_are_written_with_prefix_and_four_digits() {
         let cases = [
             (446_394.98, "Pa", "446.4 kPa"),

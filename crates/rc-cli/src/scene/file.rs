@@ -141,7 +141,8 @@ fn at_value(text: &str, error: &toml::de::Error) -> String {
 
 /// The message of serde about a value, without the names of Rust types.
 ///
-/// `invalid type: string "1e5", expected f64` becomes `must be a number, not "1e5"`. Other messages stay as they are.
+/// `invalid type: string "1e5", expected f64` becomes `must be a number without quotes, not "1e5"`. Other messages stay
+/// as they are.
 fn in_words(message: &str) -> String {
     if message == "wanted string or table" {
         return "must be text in quotes".to_owned();
