@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rc_core::quantity::{digits, engineering};
+use rc_core::quantity::{count, digits, engineering};
 use rc_sweep::{ControlKind, LeakageSummary, Summary};
 
 /// A few aligned lines about a solved problem.
@@ -131,10 +131,6 @@ fn certificate_line(s: &Summary) -> String {
     )
 }
 
-fn levels(n: usize) -> &'static str {
-    if n == 1 { "level" } else { "levels" }
-}
-
 /// A fraction with its error in percent, for instance `(7.18 ± 0.01) %`.
 fn percent(fraction: f64, error: f64) -> String {
     let text = with_error(100.0 * fraction, 100.0 * error);
@@ -169,14 +165,14 @@ fn headline(s: &Summary) -> String {
     let how = match s.status.as_str() {
         "full_contact" if s.iterations == 0 => "full contact, solved exactly".to_owned(),
         "full_contact" => format!("full contact, {}", converged(s)),
-        "not_converged" => format!("NOT CONVERGED after {} fine iterations", s.iterations),
+        "not_converged" => format!("NOT CONVERGED after {}", count(s.iterations, "fine iteration")),
         _ => converged(s),
     };
-    format!("{how}: {} s, {} threads{memory}\n", digits(s.wall_seconds, 3), s.threads)
+    format!("{how}: {} s, {}{memory}\n", digits(s.wall_seconds, 3), count(s.threads, "thread"))
 }
 
 fn converged(s: &Summary) -> String {
-    format!("converged in {} fine iterations, {} nested {}", s.iterations, s.levels, levels(s.levels))
+    format!("converged in {}, {}", count(s.iterations, "fine iteration"), count(s.levels, "nested level"))
 }
 
 /// Text of the size of a cell (m).

@@ -130,6 +130,7 @@ impl Prepared {
         let height_and_slope = surface.height_and_slope(scene.contact.boundary);
         let waves = surface.wave_file().cloned();
         let contact = scene.contact;
+        let failure = failure.map(|failure| failure.to_string());
         Ok(Parts { surface: surface.keys, waves, contact, solution, failure, flow, wall, height_and_slope })
     }
 }

@@ -32,8 +32,12 @@ pub(super) fn megabytes(memory: Option<f64>) -> String {
 
 pub(super) fn ratio(ratio: Ratio) -> String {
     let sign = if ratio.at_least { "> " } else { "" };
-    // A digit behind the point is shown only for small ratios, where it decides who is faster.
-    let digits = usize::from(ratio.value < 9.95);
+    // Ratios near 1 have more digits, since these decide who is faster.
+    let digits = match ratio.value {
+        0.95..1.05 => 2,
+        ..9.95 => 1,
+        _ => 0,
+    };
     format!("{sign}{:.digits$}", ratio.value)
 }
 
@@ -174,8 +178,8 @@ const COARSEST_EQUAL: usize = 4;
 ///
 /// All solves are certified to the same tolerance.
 pub(super) fn equal_meshes(results: &Results<'_>, scenes: &[&str]) -> String {
-    let head = "| scene, elements | fastest peer | its time, memory | adaptive, `love`: its time / ours; our time, memory | \
-                uniform, `spectral` |\n|---|---|---|---|---|\n";
+    let head = "| scene, elements | fastest peer | its time, memory | adaptive, `love`: peer's time / ours; our time, memory | \
+                uniform, `spectral`: the same |\n|---|---|---|---|---|\n";
     let line = |equal: &Equal<'_>| {
         let cells = equal.ours.map(|row| {
             let cell = |row: &Row| {
@@ -199,7 +203,7 @@ pub(super) fn equal_ratios(results: &Results<'_>, scene: &str) -> Vec<(String, [
     equal(results, scene).into_iter().map(of).collect()
 }
 
-/// The fastest peer on a mesh, and our solves.
+/// The fastest peer on a mesh, and our solves, at least one.
 struct Equal<'a> {
     peer: &'a Row,
     /// Our adaptive and uniform solves.
@@ -228,7 +232,7 @@ fn equal<'a>(results: &Results<'a>, scene: &str) -> Vec<Equal<'a>> {
         let mesh = peer.elements_per_wave;
         Equal { peer, ours: [ours(mesh, "adaptive", "love"), ours(mesh, "uniform", "spectral")] }
     };
-    peers.into_iter().map(beside).collect()
+    peers.into_iter().map(beside).filter(|equal| equal.ours.iter().any(Option::is_some)).collect()
 }
 
 /// Seconds of a solve and the evaluation of the observables. The spread of the latter is small and left out.

@@ -8,7 +8,6 @@ use rc_sweep::{Summary, files};
 
 use super::checked::CheckedScene;
 use super::dry_run;
-use super::messages;
 use super::solved::Solved;
 use crate::error::CliError;
 use crate::export::{xarray, zarr};
@@ -127,17 +126,15 @@ impl Job {
         // The bar must vanish before anything is printed. The picture of --watch must stay until the result exists.
         drop(progress);
         self.print(&summary)?;
-        let Some(message) = solved.failure() else { return Ok(()) };
+        let Some(failure) = solved.failure() else { return Ok(()) };
         let written = if self.run.out.is_some() { "; the results are written and marked not_converged" } else { "" };
         Err(match stopped {
-            Some(Reason::Interrupted) => {
-                CliError::Interrupted(format!("interrupted: {}{written}", messages::of_stopped(message)))
-            }
+            Some(Reason::Interrupted) => CliError::Interrupted(format!("interrupted: {}{written}", failure.what)),
             Some(Reason::TimeLimit(limit)) => CliError::NotConverged(format!(
                 "time_limit: {limit} was not enough: {}; give a longer time limit or a larger tolerance{written}",
-                messages::of_stopped(message)
+                failure.what
             )),
-            None => CliError::NotConverged(format!("{message}{written}")),
+            None => CliError::NotConverged(format!("{failure}{written}")),
         })
     }
 

@@ -1,10 +1,11 @@
 //! Messages of the solver in the user's units.
 
 use rc_core::Grid;
-use rc_core::quantity::digits;
+use rc_core::quantity::{count, digits};
 use rc_solver::{AdaptiveError, Certificate, ErrorBound, ProblemError, SolveError};
 use rc_sweep::memory::Budget;
 
+use super::failure::Failure;
 use crate::error::CliError;
 use crate::scene::resolve::ContactSetup;
 use crate::scene::surface::LoadedSurface;
@@ -116,16 +117,13 @@ fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
     }
 }
 
-/// The message about a solution that did not reach the tolerance.
-pub(super) fn not_converged(grid: Grid, iterations: usize, certificate: &Certificate, bound: ErrorBound) -> String {
-    format!("not converged to {bound} on {grid} elements after {iterations} iterations: {certificate}{REMEDY}")
+/// The failure of a solution that did not reach the tolerance.
+pub(super) fn not_converged(grid: Grid, iterations: usize, certificate: &Certificate, bound: ErrorBound) -> Failure {
+    let iterations = count(iterations, "iteration");
+    let what = format!("not converged to {bound} on {grid} elements after {iterations}: {certificate}");
+    Failure { what, remedy: LARGER_TOLERANCE }
 }
 
 /// What to do about a solution that did not reach the tolerance.
-const REMEDY: &str =
+const LARGER_TOLERANCE: &str =
     "; give a larger tolerance or a longer time limit; for other causes see Questions in the guide (docs/faq.md)";
-
-/// The message of [`not_converged`] without the remedy, for a solve that was stopped.
-pub(super) fn of_stopped(message: &str) -> &str {
-    message.strip_suffix(REMEDY).unwrap_or(message)
-}

@@ -5,6 +5,7 @@ pub(crate) mod solved;
 
 mod checked;
 mod dry_run;
+mod failure;
 mod flow_files;
 mod job;
 mod leakage;
@@ -15,6 +16,7 @@ mod result_files;
 mod shared_fields;
 
 pub use checked::CheckedScene;
+pub use failure::Failure;
 pub use leakage::SolvedFlow;
 pub(crate) use leakage::memory_factor;
 pub use over_ranks::main_over_ranks;

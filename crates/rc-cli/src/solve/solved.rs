@@ -9,6 +9,7 @@ use rc_solver::{ContactProblem, Cost, Plan, Solution, SolveError, SolveParams};
 use rc_sweep::Summary;
 use rc_sweep::memory::Budget;
 
+use super::failure::Failure;
 use super::leakage::SolvedFlow;
 use super::messages;
 use super::result_files::{MapHeights, ResultFiles};
@@ -36,8 +37,7 @@ pub struct ProblemSetup<'a> {
 pub struct Solved<'a> {
     problem: ProblemSetup<'a>,
     solution: Solution<'a>,
-    /// Message about a solution that did not reach the tolerance.
-    failure: Option<String>,
+    failure: Option<Failure>,
     /// The flow through the gap, if it was asked for.
     flow: Option<SolvedFlow>,
     wall: Duration,
@@ -48,8 +48,8 @@ pub struct Solved<'a> {
 pub struct SolvedParts<'a> {
     /// The solution.
     pub solution: Solution<'a>,
-    /// Message about a solution or a flow that did not converge.
-    pub failure: Option<String>,
+    /// What did not converge, if anything.
+    pub failure: Option<Failure>,
     /// The flow through the gap, if it was asked for and converged.
     pub flow: Option<SolvedFlow>,
     /// Time to the certified solution.
@@ -199,7 +199,9 @@ impl<'a> ProblemSetup<'a> {
         let wall = started.elapsed();
         let (flow, failure) = match self.contact.keys.leakage.then(|| SolvedFlow::of(&solution, self.contact.units)) {
             Some(Ok(flow)) => (Some(flow), failure),
-            Some(Err(error)) => (None, failure.or_else(|| Some(format!("leakage: {error}")))),
+            Some(Err(error)) => {
+                (None, failure.or_else(|| Some(Failure { what: format!("leakage: {error}"), remedy: "" })))
+            }
             None => (None, failure),
         };
         Ok(Solved { problem: self, solution, failure, flow, wall })
@@ -218,10 +220,10 @@ impl<'a> Solved<'a> {
         SolvedParts { solution, failure, flow, wall }
     }
 
-    /// Message about a solution that did not reach the tolerance.
+    /// What did not converge, if anything.
     #[must_use]
-    pub fn failure(&self) -> Option<&str> {
-        self.failure.as_deref()
+    pub fn failure(&self) -> Option<&Failure> {
+        self.failure.as_ref()
     }
 
     /// The summary in SI units, with the number `threads`.

@@ -2,7 +2,7 @@
 //!
 //! The line says what, where, and what would be right.
 
-use crate::support::{Place, SMALL, assert_refused, bumps, f8, map, npy, small, text};
+use crate::support::{Place, SMALL, assert_refused, assert_solved, bumps, f8, map, npy, small, text};
 
 /// Runs the small problem at 1e5 Pa with `flags`.
 ///
@@ -282,4 +282,16 @@ fn remedies_are_possible() {
         let output = place.run(&[&[command, "file"], format].concat());
         assert_refused(&output, "file: is a file; give the folder that it is in");
     }
+}
+
+#[test]
+fn an_area_error_that_no_grid_reaches_is_refused_with_one_that_is_reached() {
+    let place = Place::new();
+    let scene = ["solve", "--waves", "2", "--pressure", "1e5", "--quiet", "--area-error"];
+    let output = place.run(&[&scene[..], &["1e-7"]].concat());
+    assert_refused(&output, "area_error: 1.0e-5 % cannot be reached; with 4096 elements per side");
+    let message = text(&output.stderr);
+    let (_, rest) = message.split_once("the error is ").expect("the error that is reached");
+    let reached = rest.split(' ').next().expect("a number");
+    assert_solved(&place.run(&[&scene[..], &[&format!("{reached}%")]].concat()));
 }

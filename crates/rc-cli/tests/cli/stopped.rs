@@ -17,6 +17,8 @@ fn a_solve_that_takes_too_long_is_written_and_marked() {
         let message = text(&output.stderr);
         assert_eq!(output.status.code(), Some(3), "{method}: {message}");
         assert!(message.starts_with("error: time_limit: 200ms was not enough: "), "{method}: {message}");
+        assert!(message.contains("; give a longer time limit or a larger tolerance; the results are"), "{message}");
+        assert_eq!(message.matches("give a").count(), 1, "one remedy: {message}");
         assert_eq!(message.lines().count(), 1, "{message}");
         let summary = place.json(&format!("{method}/summary.json"));
         assert_eq!(summary["status"], "not_converged");
@@ -63,7 +65,7 @@ fn an_interrupted_solve_is_written_and_marked() {
     let output = child.wait_with_output().expect("it ends");
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(130), "{message}");
-    assert!(message.contains("error: interrupted: "), "{message}");
+    assert!(message.contains("error: interrupted: ") && !message.contains("give a"), "{message}");
     assert_eq!(place.json("r/summary.json")["status"], "not_converged");
 }
 
