@@ -6,8 +6,8 @@
 //!   side along x. Lengths are multiples of λ, pressures multiples of E*. SI units occur only at the outer interfaces,
 //!   for example in `rc-cli`. [`Units`] converts.
 //! - **Signs.** Pressure p ≥ 0 is compression. h is the height of the rigid surface, positive towards the half-space.
-//!   Gap g ≥ 0. The displacement v of the elastic surface has zero mean over the cell. The gap is `g = v - (h - h_max +
-//!   Δ)`, with maximum height h_max and penetration Δ.
+//!   Gap g ≥ 0. The displacement v of the surface of a half-space has zero mean over the periodic cell. The gap is `g =
+//!   v - (h - h_max + Δ)`, with maximum height h_max and penetration Δ.
 //! - **Points**, offsets and wave vectors in floating point are [`DVec2`] of `glam`.
 //! - **Layout.** Fields are row-major, `index = iy * nx + ix`. The origin of the cell is its corner. Point (ix, iy) is
 //!   the **centre** of its element, ((ix + ½)/nx, (iy + ½)/ny) on a square cell ([`Grid::centre`]).
