@@ -1,8 +1,8 @@
 //! The adhesionless contact problem on a periodic half-space.
 //!
 //! Find a pressure p ≥ 0 with the displacement `v = L p` (Eq. 3-4). The gap `g = v - (h - h_max + Δ)` must satisfy g ≥
-//! 0 and `p·g = 0`. h_max is the maximum height. If the mean pressure σ0 is given, the penetration Δ is the Lagrange
-//! multiplier of this constraint. If Δ is given, σ0 is a result.
+//! 0 and `p·g = 0`. h_max is the maximum height. Either the mean pressure σ0 is given, and the penetration Δ is a
+//! result, or Δ is given, and σ0 is a result.
 //!
 //! [`solve`] solves this problem. It chooses between an adaptive mesh, whose elements follow the contact, and the
 //! uniform grid. [`Method`] names these two and the paper's own procedure. [`ContactProblem`] also takes other kernels
