@@ -315,4 +315,13 @@ mod tests {
         assert_eq!((pressure, active), ([3.0, 0.0, 2.0, 0.0, 0.0], [true, false, true, false, false]));
         assert_eq!((added, changed), ([0.0, 2.0, 2.0, 0.0, 0.0], 2));
     }
+
+    #[test]
+    fn a_share_of_the_load_is_written_as_a_change_of_the_pressures() {
+        let (mut pressure, mut written) = ([1.0, 2.0, 0.0], [0.0; 3]);
+        let sum = share(&mut pressure, 0.75, 4.0, &[0.5, 0.0, 1.0], &mut written);
+        assert_eq!((pressure, sum), ([0.75, 1.5, 0.0], 2.25));
+        // Four times the changes -0.25, -0.5 and 0, plus what clipping has added.
+        assert_eq!(written, [-0.5, -2.0, 1.0]);
+    }
 }
