@@ -32,9 +32,9 @@ pub(super) fn megabytes(memory: Option<f64>) -> String {
 
 pub(super) fn ratio(ratio: Ratio) -> String {
     let sign = if ratio.at_least { "> " } else { "" };
-    // Ratios near 1 have more digits, since these decide who is faster.
+    // Ratios near 1 and 2 have more digits, since these decide who is faster, and who is twice as fast.
     let digits = match ratio.value {
-        0.95..1.05 => 2,
+        0.95..1.05 | 1.95..2.05 => 2,
         ..9.95 => 1,
         _ => 0,
     };
