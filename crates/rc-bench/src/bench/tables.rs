@@ -184,7 +184,8 @@ pub(super) fn equal_meshes(results: &Results<'_>, scenes: &[&str]) -> String {
         let cells = equal.ours.map(|row| {
             let cell = |row: &Row| {
                 let seconds = spread(total(row));
-                format!("{:.1}; {seconds}, {}", equal.peer.seconds / row.total_seconds(), megabytes(row.memory_mb))
+                let value = equal.peer.seconds / row.total_seconds();
+                format!("{}; {seconds}, {}", ratio(Ratio { value, at_least: false }), megabytes(row.memory_mb))
             };
             row.map_or_else(|| NONE.to_owned(), cell)
         });
