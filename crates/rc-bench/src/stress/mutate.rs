@@ -82,7 +82,8 @@ pub fn run(only: Option<&str>, out: &Path) -> Result<()> {
     for mutation in mutations()?.iter().filter(|mutation| mutation.is_asked_for(only)) {
         let outcome = copy.with(mutation, || copy.outcome(mutation, &known))?;
         println!("{}: {}", mutation.name, outcome.text());
-        lines.push(vec![mutation.name.clone(), mutation.file.clone(), outcome.text().replace(',', ";")]);
+        let [name, text] = [mutation.name.clone(), outcome.text()].map(|text| text.replace(',', ";"));
+        lines.push(vec![name, mutation.file.clone(), text]);
         let table = Table::new("mutations", &["mutation", "file", "outcome"], lines.iter().cloned());
         fs::write(out.join("mutations.csv"), table.csv).context("could not write mutations.csv")?;
         outcomes.push(outcome);
