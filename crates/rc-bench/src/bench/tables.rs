@@ -85,7 +85,7 @@ const SHORT: [(Quantity, f64); 5] = [
 ///
 /// A row has our median time, and the median ratio of the fastest peer's time to ours.
 pub(super) fn short(results: &Results<'_>) -> String {
-    let head = "| error below | time of rc | ratio of the fastest peer's time to ours, results as reported | smallest ratio, results as reported, corrected or extrapolated |\n\
+    let head = "| error below | time of rc | ratio of the fastest peer's time to ours, results as reported | the same ratio, results corrected or extrapolated to the peers' advantage |\n\
                 |---|---|---|---|\n";
     let line = |(quantity, level): (Quantity, f64)| {
         let asked = Asked { quantity, level, choice: Choice::Stated };
