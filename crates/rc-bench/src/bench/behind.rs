@@ -123,7 +123,7 @@ pub(super) fn summary(results: &Results<'_>) -> String {
         format!(" It is faster most often in these:\n\n{}", kinds.join("\n"))
     };
     format!(
-        "A comparison is one error, on one scene or mesh, in one reading of the peers' results. In {slower} of {n} comparisons the \
+        "Each combination of an error, a scene or mesh, and a way to read the peers' results is one comparison. In {slower} of {n} comparisons the \
          fastest peer is faster. In {close} more it takes less than twice our time.{most}\n"
     )
 }
