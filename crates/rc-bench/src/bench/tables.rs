@@ -301,14 +301,15 @@ mod tests {
         let references = references("paper", [0.07, 4e-3, 1.0]);
         let mut rows: Vec<Row> =
             rows().into_iter().map(|row| Row { tolerance: EQUAL_TOLERANCE.to_owned(), ..row }).collect();
-        // A slower peer on one of the meshes is left out, and so is a mesh that only peers have.
+        // A slower peer on one of the meshes is left out, and so are meshes that only peers have.
         let slower = Row { program: "slower".to_owned(), seconds: 31.0, ..rows[3].clone() };
         let coarser = Row { elements_per_wave: 2, ..rows[3].clone() };
-        rows.extend([slower, coarser]);
+        let finer = Row { elements_per_wave: 64, ..rows[3].clone() };
+        rows.extend([slower, coarser, finer]);
         (rows[3].seconds_min, rows[3].seconds_max) = (29.0, 33.0);
         let table = equal_meshes(&Results { rows: &rows, references: &references }, &["paper"]);
         assert_eq!(table.lines().count(), 4, "{table}");
-        assert!(table.contains("| paper, λ_min/4 | tamaas | 30 s (29 s to 33 s), 12 MB | 40.0; 750 ms"), "{table}");
+        assert!(table.contains("| paper, λ_min/4 | tamaas | 30 s (29 s to 33 s), 12 MB | 40; 750 ms"), "{table}");
         assert!(!table.contains("slower"), "{table}");
     }
 
