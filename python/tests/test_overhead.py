@@ -10,19 +10,26 @@ import pytest
 
 import roughcontact as rc
 
+#: Time that a call may spend outside of the solver (s).
+LIMIT = 0.3e-3
+
 
 @pytest.mark.parametrize("method", ["uniform", "adaptive"])
 def test_a_small_solve_spends_little_outside_of_the_solver(method):
     heights = rc.surface(waves=8, grid=64, seed=2)
     keys = {"cell": 0.01, "e_star": 1e9, "pressure": 1e5, "threads": 1, "method": method}
-    outside = []
-    for _ in range(300):
+
+    def outside():
         started = time.perf_counter()
         result = rc.solve(heights, **keys)
-        outside.append(time.perf_counter() - started - result._source.wall_seconds)
-    # The fastest call: where others use the machine, the rest is waiting for a processor.
-    seconds = min(outside)
-    assert seconds < 0.3e-3, f"{1e3 * seconds:.3f} ms"
+        return time.perf_counter() - started - result._source.wall_seconds
+
+    # The fastest call: where others use the machine, the rest is waiting for a processor. They may use it for seconds.
+    seconds = min(outside() for _ in range(300))
+    tries_end = time.perf_counter() + 20.0
+    while seconds >= LIMIT and time.perf_counter() < tries_end:
+        seconds = min(seconds, outside())
+    assert seconds < LIMIT, f"{1e3 * seconds:.3f} ms"
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="/proc/self/statm")

@@ -38,6 +38,10 @@ pub(crate) fn seeds(text: &str) -> PyResult<Vec<u64>> {
 ///
 /// A keyword with the value `None` counts as absent.
 pub(crate) fn scene_of(keys: &Bound<'_, PyDict>, path: Option<&Path>) -> PyResult<Scene> {
+    resolve::layers(path, scene_of_keys(keys)?).map_err(raised)
+}
+
+fn scene_of_keys(keys: &Bound<'_, PyDict>) -> PyResult<Scene> {
     let mut table = Table::new();
     for (key, value) in keys {
         let key: String = key.extract()?;
@@ -45,8 +49,7 @@ pub(crate) fn scene_of(keys: &Bound<'_, PyDict>, path: Option<&Path>) -> PyResul
             table.insert(key, value);
         }
     }
-    let scene = file::from_table(&table).map_err(wrong_value)?;
-    resolve::layers(path, scene).map_err(raised)
+    file::from_table(&table).map_err(wrong_value)
 }
 
 /// The scene as in [`scene_of`], for a call that may have a height map.
@@ -54,9 +57,10 @@ pub(crate) fn scene_of(keys: &Bound<'_, PyDict>, path: Option<&Path>) -> PyResul
 /// The map replaces the surface of a scene file, as a file of heights would. Other keys of the call that describe a
 /// surface are refused later.
 pub(crate) fn with_map(keys: &Bound<'_, PyDict>, path: Option<&Path>, holds_map: bool) -> PyResult<Scene> {
-    let mut scene = scene_of(keys, path)?;
+    let of_keys = scene_of_keys(keys)?;
+    let call = of_keys.surface.clone();
+    let mut scene = resolve::layers(path, of_keys).map_err(raised)?;
     if holds_map {
-        let call = scene_of(keys, None)?.surface;
         let kept = &mut scene.surface;
         if call.heights.is_none() && !call.generates() {
             *kept = SurfaceKeys { cell: kept.cell, cell_y: kept.cell_y, grid: call.grid, ..call };
