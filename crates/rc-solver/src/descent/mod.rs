@@ -28,6 +28,7 @@ mod response;
 mod round;
 mod rows;
 mod run;
+mod safe_round;
 mod shares;
 mod start;
 mod state;

@@ -96,7 +96,7 @@ impl Descent<'_> {
         let sums = self.directions.advance(corrections, &self.layout, [beta, shift], &slope);
         // A direction that does not lead down would undo progress. It is dropped, and the next direction starts afresh.
         let leads_down = sums.curvature > 0.0 && sums.slope < 0.0;
-        let length = if leads_down { -sums.slope / sums.curvature } else { 0.0 };
+        let length = if leads_down { -self.step_factor * sums.slope / sums.curvature } else { 0.0 };
         self.curvature = if leads_down { sums.curvature } else { f64::INFINITY };
         self.info.iterations += 1;
         if let Control::MeanPressure(_) = self.problem.control {

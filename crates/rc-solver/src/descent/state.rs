@@ -34,6 +34,8 @@ pub(crate) struct Descent<'a> {
     pub(super) directions: ConjugateDirections,
     /// ⟨t, L t⟩ of the last step. Infinite if the next direction need not be conjugate to another.
     pub(super) curvature: f64,
+    /// Factor of the length of steps. It is 1 unless rounds would raise the energy.
+    pub(super) step_factor: f64,
     /// Whether the last projection has chosen the active elements.
     pub(super) is_chosen: bool,
     /// The gap of elements in contact.
@@ -75,6 +77,7 @@ impl<'a> Descent<'a> {
             gap,
             directions: ConjugateDirections::new(n),
             curvature: f64::INFINITY,
+            step_factor: 1.0,
             is_chosen: false,
             zero_gap: 0.0,
             pressed: f64::INFINITY,

@@ -5,6 +5,7 @@ use rc_core::{DVec2, Field, Grid, Kernel, Operator, Silent};
 use rc_kernel::{Love, Spectral};
 use rc_solver::{
     Certificate, ContactProblem, Control, DirectSum, Method, ProblemError, Solution, SolveError, SolveParams, Status,
+    UniformOperator,
 };
 
 use crate::bumps;
@@ -158,6 +159,50 @@ fn stiffness_is_the_slope_of_load_over_penetration() {
         let expected = mean_pressure * (high.info().penetration - low.info().penetration);
         assert!((work / expected - 1.0).abs() < 1e-4, "dU = {work:e}, σ0 dΔ = {expected:e}");
     }
+}
+
+/// Almost all problems in long cells are solved.
+///
+/// A small load at a wrong place displaces a long cell everywhere. Rounds then undo each other, unless no round may
+/// raise the energy. Without that rule, 17 of these solves do not converge instead of 1.
+#[test]
+fn long_cells_converge() {
+    let (mut n_solved, mut failed) = (0, Vec::new());
+    let cells = [(400, 4, 100.0), (512, 12, 100.0), (1024, 12, 100.0), (512, 16, 300.0)];
+    for (cell, (nx, ny, length)) in cells.into_iter().enumerate() {
+        let grid = Grid::in_cell(nx, ny, 1.0 / length).expect("grid");
+        let operator = UniformOperator::new(grid, &Spectral);
+        let displacement = |pressure: &Field| {
+            let mut displacement = Field::zeros(grid);
+            let scratch = &mut vec![0.0; operator.scratch_len()];
+            operator.apply(pressure.values(), displacement.values_mut(), scratch);
+            displacement
+        };
+        for seed in 0..6 {
+            let value = |i: usize| quasi_random((100_000 * (6 * cell + seed) + i) * 7919 % 1_000_003) - 0.5;
+            let noise = Field::new(grid, (0..grid.len()).map(value).collect()).expect("field");
+            // The pressure of full contact, less its mean. Surfaces have the Hurst exponents 1 and 0.
+            for pressure in [displacement(&noise), noise] {
+                let heights = displacement(&pressure);
+                for load in [0.3, 1.0] {
+                    let mut solve = |control| {
+                        let params = SolveParams::default().by(Method::Uniform);
+                        let solution = ContactProblem::new(&heights, control).solve(&params, &Silent);
+                        n_solved += usize::from(solution.is_ok());
+                        if let Err(error) = &solution {
+                            failed.push(format!("{grid}, seed {seed}, {control:?}: {error}"));
+                        }
+                        solution
+                    };
+                    if let Ok(solution) = solve(Control::MeanPressure(load * pressure.rms())) {
+                        let _ = solve(Control::Penetration(solution.info().penetration));
+                    }
+                }
+            }
+        }
+    }
+    // Rounding on other processors may decide about another one.
+    assert!(n_solved >= 188 && failed.len() <= 2, "{n_solved} are solved, but not {failed:#?}");
 }
 
 /// A cell whose copies make a square has the solution of that square.
