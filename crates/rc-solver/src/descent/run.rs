@@ -15,8 +15,7 @@ const STEPS_PER_ROUND: usize = 2;
 
 /// Rounds without progress after which no round may raise the energy.
 ///
-/// Descents that converge have fewer. Safe rounds from the first one on would cost them iterations near the rounding
-/// error.
+/// Descents that converge without safe rounds rarely have as many, so this rule keeps their results.
 const HESITATION: usize = 4;
 
 /// Rounds without progress before directions are forgotten.
