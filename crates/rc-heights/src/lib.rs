@@ -42,6 +42,7 @@
 mod error;
 mod formats;
 mod map;
+mod note;
 mod parameters;
 pub mod spectrum;
 mod statistics;
@@ -50,10 +51,11 @@ mod units;
 
 pub use error::{FormatError, ReadError};
 pub use formats::{
-    ChannelInfo, Format, Layout, LayoutError, MatArray, ReadParams, channels, channels_of, format_of, mat_arrays,
-    may_have_sides, npy, parse, parse_with, read, read_with, text,
+    ChannelInfo, DEFAULT_MAX_BYTES, Format, Layout, LayoutError, Mask, MaskError, MatArray, ReadParams, channels,
+    channels_of, format_of, mat_arrays, may_have_sides, npy, parse, parse_with, read, read_with, text,
 };
 pub use map::{BorderStep, HeightMap};
+pub use note::ReadNote;
 pub use parameters::AreaParameters;
 pub use statistics::MapStatistics;
 pub use treat::{

@@ -2,7 +2,7 @@
 
 use rc_core::Field;
 
-use crate::{LengthUnitError, Scales, Unit};
+use crate::{LengthUnitError, ReadNote, Scales, Unit};
 
 /// Heights on a measured rectangle, positive out of the material.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,13 +17,28 @@ pub struct HeightMap {
     pub sides: Option<[f64; 2]>,
     /// Unit of the sides.
     pub side_unit: Unit,
+    /// What a reader did beyond copying numbers, and what it had to assume.
+    pub notes: Vec<ReadNote>,
 }
 
 impl HeightMap {
-    /// A map without sides and without a unit of heights, as from an array.
+    /// A map without notes.
+    #[must_use]
+    pub fn new(heights: Field, height_unit: Unit, sides: Option<[f64; 2]>, side_unit: Unit) -> Self {
+        Self { heights, height_unit, sides, side_unit, notes: Vec::new() }
+    }
+
+    /// A map without sides, from an array. Its heights are in metres unless the user gives a unit.
     #[must_use]
     pub fn bare(heights: Field) -> Self {
-        Self { heights, height_unit: Unit::Unnamed, sides: None, side_unit: Unit::Unnamed }
+        Self::new(heights, Unit::Array, None, Unit::Unnamed)
+    }
+
+    /// The same map with one more note.
+    #[must_use]
+    pub fn with_note(mut self, note: ReadNote) -> Self {
+        self.notes.push(note);
+        self
     }
 
     /// The same map with heights and sides in metres.
@@ -35,7 +50,7 @@ impl HeightMap {
     /// [`LengthUnitError`] when levels of grey have no scale, or when `scales` gives a unit that the file names.
     pub fn in_metres(mut self, scales: Scales) -> Result<Self, LengthUnitError> {
         let unit = scales.unit.map_or(1.0, crate::LengthUnit::metres);
-        let unnamed = |is: Unit| is == Unit::Unnamed;
+        let unnamed = |is: Unit| matches!(is, Unit::Unnamed | Unit::Array);
         let unit_has_use = unnamed(self.height_unit) || self.sides.is_some() && unnamed(self.side_unit);
         match (self.height_unit, scales) {
             (Unit::GreyLevel, Scales { height_scale: None, .. }) => return Err(LengthUnitError::GreyLevels),
@@ -52,15 +67,21 @@ impl HeightMap {
         let factor = match (self.height_unit, scales.height_scale) {
             (_, Some(value)) if value == 0.0 || !value.is_finite() => return Err(LengthUnitError::Scale { value }),
             (Unit::Metre, Some(_)) => return Err(LengthUnitError::HeightsInMetres),
-            (Unit::Unnamed | Unit::GreyLevel | Unit::NotLength, Some(value)) => value,
-            (Unit::Unnamed, None) => unit,
+            (Unit::Unnamed | Unit::Array | Unit::GreyLevel | Unit::NotLength, Some(value)) => value,
+            (Unit::Unnamed | Unit::Array, None) => unit,
             // These cases are refused above.
             (Unit::GreyLevel | Unit::NotLength, None) => return Err(LengthUnitError::GreyLevels),
             (Unit::Metre, None) => 1.0,
         };
         scale(self.heights.values_mut(), factor);
+        if self.height_unit == Unit::Unnamed && scales == Scales::default() {
+            self.notes.push(ReadNote::HeightsAssumedMetres);
+        }
         if let Some(sides) = self.sides.as_mut().filter(|_| unnamed(self.side_unit)) {
             scale(sides, unit);
+            if scales.unit.is_none() && self.side_unit == Unit::Unnamed {
+                self.notes.push(ReadNote::SidesAssumedMetres);
+            }
         }
         (self.height_unit, self.side_unit) = (Unit::Metre, Unit::Metre);
         Ok(self)
@@ -159,7 +180,7 @@ mod tests {
 
     fn map(height_unit: Unit, side_unit: Unit) -> HeightMap {
         let heights = Field::new(Grid::new(2, 1).expect("a grid"), vec![1.0, 2.0]).expect("two heights");
-        HeightMap { heights, height_unit, sides: Some([3.0, 4.0]), side_unit }
+        HeightMap::new(heights, height_unit, Some([3.0, 4.0]), side_unit)
     }
 
     #[test]

@@ -86,6 +86,8 @@ pub enum Unit {
     Metre,
     /// A length in a unit that the file does not name.
     Unnamed,
+    /// A number of an array (`.npy`, memory), which is in metres by definition unless the user gives a unit.
+    Array,
     /// A level of grey.
     GreyLevel,
     /// A quantity that is not a length, such as a phase or a voltage.

@@ -33,7 +33,7 @@ pub(crate) fn values_of<'a>(heights: &'a Heights<'_>) -> PyResult<&'a [f64]> {
 /// This is the only copy of the caller's heights. It becomes the heights in units of the cell.
 pub(crate) fn map_of(heights: &Heights<'_>, sides: Option<[f64; 2]>) -> PyResult<HeightMap> {
     let field = Field::new(grid_of(heights)?, divided(heights, 1.0)?).map_err(bad_input)?;
-    Ok(HeightMap { heights: field, height_unit: Unit::Metre, sides, side_unit: Unit::Metre })
+    Ok(HeightMap::new(field, Unit::Metre, sides, Unit::Metre))
 }
 
 /// The values of an array, each divided by `unit`.

@@ -29,7 +29,8 @@ fn parts(py: Python<'_>, map: HeightMap) -> PyResult<MapParts<'_>> {
 /// Names of the channels of a file, each with whether it has heights.
 #[pyfunction]
 pub(crate) fn channels(py: Python<'_>, path: PathBuf) -> PyResult<Vec<(String, bool)>> {
-    let channels = on_threads(py, 0, move || rc_heights::channels(&path))?.map_err(|error| raised(error.into()))?;
+    let channels = on_threads(py, 0, move || rc_heights::channels(&path, &rc_heights::ReadParams::default()))?
+        .map_err(|error| raised(error.into()))?;
     Ok(channels.into_iter().map(|channel| (channel.name, channel.is_height)).collect())
 }
 

@@ -149,7 +149,7 @@ impl Inspected {
 ///
 /// An error of such a file has the names of its channels.
 fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
-    let channels = rc_heights::channels(&args.file)?;
+    let channels = rc_heights::channels(&args.file, &ReadParams { layout: args.layout, ..ReadParams::default() })?;
     let several = channels.len() > 1;
     match statistics(args) {
         Err(CliError::Input(message)) if several && args.channel.is_none() && channels.iter().any(|c| c.is_height) => {
@@ -173,7 +173,7 @@ fn list(channels: &[ChannelInfo]) -> String {
 
 /// The record of a height map and a note about its cell. Its pictures are written.
 fn statistics(args: &InspectArgs) -> Result<(SurfaceRecord, String), CliError> {
-    let params = ReadParams { channel: args.channel.clone(), layout: args.layout };
+    let params = ReadParams { channel: args.channel.clone(), layout: args.layout, ..ReadParams::default() };
     let map = heights::read(&args.file, &params, Scales { unit: args.unit, height_scale: args.height_scale })?;
     let Inspected { heights, record, note } = Inspected::new(&args.file, map, &params, [args.cell, args.cell_y])?;
     draw(args, &heights, &record)?;

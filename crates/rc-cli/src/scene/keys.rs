@@ -312,7 +312,7 @@ impl SurfaceKeys {
     /// The channel and the layout to read of a height map.
     #[must_use]
     pub fn read_params(&self) -> ReadParams {
-        ReadParams { channel: self.channel.clone(), layout: self.layout }
+        ReadParams { channel: self.channel.clone(), layout: self.layout, ..ReadParams::default() }
     }
 
     /// Whether any parameter of a random surface is given.

@@ -15,11 +15,6 @@ pub(super) const ZIP: &[u8] = b"PK\x03\x04";
 /// The first bytes of a gzip file.
 pub(super) const GZIP: &[u8] = b"\x1f\x8b\x08";
 
-/// Maximum length of a decompressed gzip file, in bytes.
-///
-/// Memory grows with the actual length, not with the length in a header.
-const MOST_UNPACKED: u64 = 4 << 30;
-
 /// Formats by the ends of the names of members.
 const FORMATS: &[(&str, Format)] = &[("main.xml", Format::X3p), ("index.xml", Format::Plux)];
 
@@ -82,13 +77,13 @@ pub(super) fn folder_of(names: &[String], member: &str) -> String {
     folders.min_by_key(|folder| folder.len()).unwrap_or_default().to_owned()
 }
 
-/// Decompresses a gzip file.
-pub(super) fn unzipped(bytes: &[u8]) -> Result<Vec<u8>, FormatError> {
+/// Decompresses a gzip file to at most `max_bytes`.
+pub(super) fn unzipped(bytes: &[u8], max_bytes: u64) -> Result<Vec<u8>, FormatError> {
     let mut unpacked = Vec::new();
-    let read = MultiGzDecoder::new(bytes).take(MOST_UNPACKED + 1).read_to_end(&mut unpacked);
+    let read = MultiGzDecoder::new(bytes).take(max_bytes.saturating_add(1)).read_to_end(&mut unpacked);
     read.map_err(|cause| FormatError::Gzip(cause.to_string()))?;
-    if unpacked.len() as u64 > MOST_UNPACKED {
-        return Err(FormatError::Gzip(format!("unpacked, it has more than {MOST_UNPACKED} bytes")));
+    if unpacked.len() as u64 > max_bytes {
+        return Err(FormatError::Gzip(format!("unpacked, it has more than {max_bytes} bytes")));
     }
     Ok(unpacked)
 }

@@ -117,7 +117,7 @@ impl<'a> DataField<'a> {
         let x = positive(Format::Gwy, "xreal", self.sides[0] * factor)?;
         let y = positive(Format::Gwy, "yreal", self.sides[1] * factor)?;
         let (heights, height_unit) = (field(grid, values), self.height.0);
-        Ok(HeightMap { heights, height_unit, sides: Some([x, y]), side_unit })
+        Ok(HeightMap::new(heights, height_unit, Some([x, y]), side_unit))
     }
 }
 

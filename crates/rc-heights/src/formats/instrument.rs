@@ -90,7 +90,7 @@ pub(super) fn sides(
 pub(super) fn map(grid: Grid, values: Vec<f64>, is_height: bool, sides: Option<[f64; 2]>) -> HeightMap {
     let height_unit = if is_height { Unit::Metre } else { Unit::NotLength };
     let side_unit = if sides.is_some() { Unit::Metre } else { Unit::Unnamed };
-    HeightMap { heights: field(grid, values), height_unit, sides, side_unit }
+    HeightMap::new(field(grid, values), height_unit, sides, side_unit)
 }
 
 /// Marks points as missing whose stored value `is_missing`, and multiplies the others by `scale`.

@@ -214,7 +214,7 @@ fn map(arrays: &[Array<'_>], i: usize) -> Result<HeightMap, FormatError> {
         flip(&mut values, grid, steps.map(|step| step < 0.0));
         sides = Some([steps[0].abs() * grid.nx() as f64, steps[1].abs() * grid.ny() as f64]);
     }
-    Ok(HeightMap { heights: field(grid, values), height_unit: Unit::Unnamed, sides, side_unit: Unit::Unnamed })
+    Ok(HeightMap::new(field(grid, values), Unit::Unnamed, sides, Unit::Unnamed))
 }
 
 /// Coordinates of array `i` along x and y.

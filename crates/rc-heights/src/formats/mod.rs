@@ -17,6 +17,7 @@ mod ibw;
 mod instrument;
 mod layout;
 mod lines;
+mod mask;
 mod mat;
 mod metropro;
 mod nanoscope;
@@ -47,6 +48,7 @@ pub(crate) use fields::shown;
 pub use format::Format;
 pub use layout::{Layout, LayoutError};
 pub(crate) use lines::{data_lines, number, words};
+pub use mask::{Mask, MaskError};
 pub use mat::{MatArray, mat_arrays};
 pub(crate) use netcdf::hdf5_table;
 
@@ -55,20 +57,37 @@ use self::heading::Heading;
 use crate::{FormatError, HeightMap, ReadError};
 
 /// Choices for files that can be read in several ways.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ReadParams {
     /// Name of a channel. `None` means the first channel with heights.
     pub channel: Option<String>,
     /// Layout of a text. `None` means the layout that its first lines suggest.
     pub layout: Option<Layout>,
+    /// Values that mark missing points, in the numbers of the file.
+    pub missing: Vec<f64>,
+    /// What a mask in the file means.
+    pub mask: Mask,
+    /// Maximum number of bytes of anything that a file unpacks to, and of the map itself.
+    pub max_bytes: u64,
 }
+
+impl Default for ReadParams {
+    fn default() -> Self {
+        Self { channel: None, layout: None, missing: Vec::new(), mask: Mask::default(), max_bytes: DEFAULT_MAX_BYTES }
+    }
+}
+
+/// Default of [`ReadParams::max_bytes`]: a map of 16384² points.
+///
+/// A program that knows its machine gives its own.
+pub const DEFAULT_MAX_BYTES: u64 = 4 << 30;
 
 /// The format of the file at `path`. For a gzip file, it is the format of the contents.
 ///
 /// # Errors
 /// Those of [`read`], as far as they follow from the first bytes.
 pub fn format_of(path: &Path) -> Result<Format, ReadError> {
-    Opened::new(path).map(|file| file.format)
+    Opened::new(path, DEFAULT_MAX_BYTES).map(|file| file.format)
 }
 
 /// Whether the file at `path` may contain the size of the measured rectangle.
@@ -78,7 +97,7 @@ pub fn format_of(path: &Path) -> Result<Format, ReadError> {
 /// # Errors
 /// Those of [`read`], as far as they follow from the first bytes.
 pub fn may_have_sides(path: &Path, params: &ReadParams) -> Result<bool, ReadError> {
-    let file = Opened::new(path)?;
+    let file = Opened::new(path, params.max_bytes)?;
     Ok(match layout::format(file.format, params.layout) {
         Format::Csv => Heading::of(&decoded(&file.bytes)).is_ok_and(|heading| heading.says_sides()),
         format => format.has_sides(),
@@ -95,11 +114,12 @@ struct Opened {
 }
 
 impl Opened {
-    fn new(path: &Path) -> Result<Self, ReadError> {
-        Self::open(path).map_err(|problem| ReadError { path: path.to_owned(), problem })
+    /// Opens a file that unpacks to at most `max_bytes`.
+    fn new(path: &Path, max_bytes: u64) -> Result<Self, ReadError> {
+        Self::open(path, max_bytes).map_err(|problem| ReadError { path: path.to_owned(), problem })
     }
 
-    fn open(path: &Path) -> Result<Self, FormatError> {
+    fn open(path: &Path, max_bytes: u64) -> Result<Self, FormatError> {
         let mut file = File::open(path).map_err(unreadable)?;
         if file.metadata().map_err(unreadable)?.is_dir() {
             return Err(FormatError::Unreadable("it is a folder, not a height map such as .npy or .csv".into()));
@@ -109,7 +129,7 @@ impl Opened {
         file.by_ref().take(4096).read_to_end(&mut bytes).map_err(unreadable)?;
         if bytes.starts_with(archive::GZIP) {
             file.read_to_end(&mut bytes).map_err(unreadable)?;
-            let bytes = archive::unzipped(&bytes)?;
+            let bytes = archive::unzipped(&bytes, max_bytes)?;
             let is_gz = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
             let name = if is_gz { path.with_extension("") } else { path.to_owned() };
             return Ok(Self { format: Format::of(&name, &bytes)?, bytes, rest: None });
@@ -162,10 +182,10 @@ pub fn read(path: &Path) -> Result<HeightMap, ReadError> {
 /// Those of [`read`], and [`FormatError::NoChannel`] for a channel that the file does not have.
 pub fn read_with(path: &Path, params: &ReadParams) -> Result<HeightMap, ReadError> {
     let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
-    let file = Opened::new(path)?;
+    let file = Opened::new(path, params.max_bytes)?;
     if file.format == Format::Npy && file.rest.is_some() && params.channel.is_none() {
         // Arrays may be as large as memory, so they are not read as bytes first.
-        return checked(HeightMap::bare(npy::read(path)?)).map_err(fail);
+        return checked(HeightMap::bare(npy::read(path)?), params).map_err(fail);
     }
     let format = layout::format(file.format, params.layout);
     file.whole().and_then(|bytes| parse_with(&bytes, format, params)).map_err(fail)
@@ -173,16 +193,18 @@ pub fn read_with(path: &Path, params: &ReadParams) -> Result<HeightMap, ReadErro
 
 /// The channels of the file at `path`, in its order. Their values are not read.
 ///
+/// Of `params`, only the layout and the limit of memory matter.
+///
 /// # Errors
 /// [`ReadError`] when the file cannot be read, has an unknown format, or is damaged.
-pub fn channels(path: &Path) -> Result<Vec<ChannelInfo>, ReadError> {
-    let file = Opened::new(path)?;
-    let format = file.format;
+pub fn channels(path: &Path, params: &ReadParams) -> Result<Vec<ChannelInfo>, ReadError> {
+    let file = Opened::new(path, params.max_bytes)?;
+    let format = layout::format(file.format, params.layout);
     if format == Format::Npy {
         // The file has one array, which may be as large as memory.
         return Ok(vec![ChannelInfo { name: String::new(), is_height: true }]);
     }
-    let channels = file.whole().and_then(|bytes| channels_of(&bytes, format));
+    let channels = file.whole().and_then(|bytes| channels_of(&bytes, format, params));
     channels.map_err(|problem| ReadError { path: path.to_owned(), problem })
 }
 
@@ -190,8 +212,8 @@ pub fn channels(path: &Path) -> Result<Vec<ChannelInfo>, ReadError> {
 ///
 /// # Errors
 /// [`FormatError`] when the bytes are not valid.
-pub fn channels_of(bytes: &[u8], format: Format) -> Result<Vec<ChannelInfo>, FormatError> {
-    Ok(named(in_bytes(bytes, format, None)?).iter().map(ChannelInfo::from).collect())
+pub fn channels_of(bytes: &[u8], format: Format, params: &ReadParams) -> Result<Vec<ChannelInfo>, FormatError> {
+    Ok(named(in_bytes(bytes, format, params)?).iter().map(ChannelInfo::from).collect())
 }
 
 /// Reads a height map from the bytes of a file of the given format.
@@ -207,15 +229,15 @@ pub fn parse(bytes: &[u8], format: Format) -> Result<HeightMap, FormatError> {
 /// # Errors
 /// [`FormatError`] when the bytes are not valid, as for [`read_with`].
 pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<HeightMap, FormatError> {
-    let channel = chosen(named(in_bytes(bytes, format, params.layout)?), params.channel.as_deref())?;
-    checked((channel.read)()?)
+    let channel = chosen(named(in_bytes(bytes, format, params)?), params.channel.as_deref())?;
+    checked((channel.read)()?, params)
 }
 
 /// The channels of a file of the given format.
-fn in_bytes(bytes: &[u8], format: Format, layout: Option<Layout>) -> Channels<'_> {
+fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &ReadParams) -> Channels<'a> {
     Ok(match format {
         Format::Al3d => al3d::channels(bytes)?,
-        Format::Csv => text::channels(bytes, layout)?,
+        Format::Csv => text::channels(bytes, params.layout)?,
         Format::Gsf => only(move || gsf::parse(bytes)),
         Format::Gwy => gwy::channels(bytes)?,
         Format::Hdf5 | Format::NetCdf => netcdf::channels(bytes, format)?,
@@ -238,8 +260,14 @@ fn in_bytes(bytes: &[u8], format: Format, layout: Option<Layout>) -> Channels<'_
     })
 }
 
+/// Makes the points missing that have a mark of the user.
+///
 /// Refuses infinite heights and maps without a measured point.
-fn checked(map: HeightMap) -> Result<HeightMap, FormatError> {
+fn checked(mut map: HeightMap, params: &ReadParams) -> Result<HeightMap, FormatError> {
+    if !params.missing.is_empty() {
+        let is_marked = |height: f64| params.missing.iter().any(|mark| (height - mark).abs() <= 1e-6 * mark.abs());
+        map.heights.values_mut().iter_mut().filter(|height| is_marked(**height)).for_each(|height| *height = f64::NAN);
+    }
     let (values, nx) = (map.heights.values(), map.heights.grid().nx());
     if let Some(i) = values.iter().position(|height| height.is_infinite()) {
         return Err(FormatError::Infinite { row: i / nx, column: i % nx, value: values[i] });

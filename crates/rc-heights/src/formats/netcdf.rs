@@ -258,7 +258,7 @@ impl Arrays {
             let side = |axis: usize, n: usize| steps[axis].abs() * n as f64 * factors[axis];
             (sides, side_unit) = (Some([side(0, grid.nx()), side(1, grid.ny())]), unit);
         }
-        Ok(HeightMap { heights: field(grid, values), height_unit, sides, side_unit })
+        Ok(HeightMap::new(field(grid, values), height_unit, sides, side_unit))
     }
 
     /// The values of a variable, unpacked. Values that are marked as missing are `NaN`.

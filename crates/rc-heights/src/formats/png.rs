@@ -49,5 +49,5 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
         return Err(FormatError::CutShort { grid, needed, found: 2 * alpha * values.len() as u64 });
     }
     let heights = field(grid, values);
-    Ok(HeightMap { heights, height_unit: Unit::GreyLevel, sides: None, side_unit: Unit::Unnamed })
+    Ok(HeightMap::new(heights, Unit::GreyLevel, None, Unit::Unnamed))
 }

@@ -38,7 +38,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
 fn map(grid: Grid, spacing: [f64; 2], mut values: Vec<f64>, missing: impl Fn(f64) -> bool) -> HeightMap {
     values.iter_mut().filter(|value| missing(**value)).for_each(|value| *value = f64::NAN);
     let sides = Some([spacing[0] * grid.nx() as f64, spacing[1] * grid.ny() as f64]);
-    HeightMap { heights: field(grid, values), height_unit: Unit::Unnamed, sides, side_unit: Unit::Unnamed }
+    HeightMap::new(field(grid, values), Unit::Unnamed, sides, Unit::Unnamed)
 }
 
 /// Distance of `n` grid lines from `low` to `high`.

@@ -55,7 +55,7 @@ fn map(text: &str, heading: &Heading, layout: Option<Layout>) -> Result<HeightMa
     let (sides, side_unit) = heading.sides(heights.grid().nx(), heights.grid().ny())?;
     let (height_unit, factor) = heading.of_heights()?;
     crate::map::scale(heights.values_mut(), factor);
-    Ok(HeightMap { heights, height_unit, sides, side_unit })
+    Ok(HeightMap::new(heights, height_unit, sides, side_unit))
 }
 
 /// The numbers from line `first` on.

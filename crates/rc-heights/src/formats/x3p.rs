@@ -49,7 +49,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
         *value = if value.is_infinite() { f64::NAN } else { *value * increments[2] + offset };
     }
     let sides = Some([increments[0] * grid.nx() as f64, increments[1] * grid.ny() as f64]);
-    Ok(HeightMap { heights: field(grid, values), height_unit: Unit::Metre, sides, side_unit: Unit::Metre })
+    Ok(HeightMap::new(field(grid, values), Unit::Metre, sides, Unit::Metre))
 }
 
 /// Applies a mask with a bit for each point, lowest bit first. Points whose bit is 0 were not measured.

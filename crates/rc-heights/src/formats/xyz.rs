@@ -116,7 +116,7 @@ fn on_grid(points: Vec<[f64; 3]>) -> Result<HeightMap, FormatError> {
         values[i] = z;
     }
     let sides = Some([axes[0].step * grid.nx() as f64, axes[1].step * grid.ny() as f64]);
-    Ok(HeightMap { heights: field(grid, values), height_unit: Unit::Unnamed, sides, side_unit: Unit::Unnamed })
+    Ok(HeightMap::new(field(grid, values), Unit::Unnamed, sides, Unit::Unnamed))
 }
 
 /// The points from line `first` on. `order` has the columns of x, y and height.

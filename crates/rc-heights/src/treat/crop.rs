@@ -71,5 +71,5 @@ pub(super) fn crop(map: &HeightMap, crop: Crop) -> Result<HeightMap, TreatError>
     let values = (y..y + ny).flat_map(|iy| &map.heights.row(iy)[x..x + nx]).copied().collect();
     let heights = Field::new(grid, values).expect("as many values as points");
     let sides = map.sides.map(|_| [dx * nx as f64, dy * ny as f64]);
-    Ok(HeightMap { heights, sides, ..*map })
+    Ok(HeightMap { heights, sides, ..map.clone() })
 }

@@ -26,7 +26,7 @@ fn mirror(map: &HeightMap) -> Result<HeightMap, TreatError> {
         values.extend(map.heights.row(iy).iter().rev());
     }
     let heights = Field::new(twice, values).expect("as many values as points");
-    Ok(HeightMap { heights, sides: map.sides.map(|sides| sides.map(|side| 2.0 * side)), ..*map })
+    Ok(HeightMap { heights, sides: map.sides.map(|sides| sides.map(|side| 2.0 * side)), ..map.clone() })
 }
 
 /// Tukey's window: 1 in the middle, decreasing to 0 at both ends over the length `taper`.

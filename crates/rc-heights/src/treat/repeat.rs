@@ -53,7 +53,7 @@ pub(super) fn repeat(map: &HeightMap, repeat: Repeat) -> Result<HeightMap, Treat
     let rows = (0..y).flat_map(|_| 0..grid.ny());
     let values = rows.flat_map(|iy| std::iter::repeat_n(map.heights.row(iy), x).flatten().copied()).collect();
     let heights = Field::new(all, values).expect("as many values as points");
-    Ok(HeightMap { heights, sides: map.sides.map(|[a, b]| [x as f64 * a, y as f64 * b]), ..*map })
+    Ok(HeightMap { heights, sides: map.sides.map(|[a, b]| [x as f64 * a, y as f64 * b]), ..map.clone() })
 }
 
 #[cfg(test)]

@@ -82,7 +82,7 @@ fn files_that_are_cut_at_any_64th_are_refused_or_the_same_map() {
 fn channels_are_listed_and_read_by_name() {
     let names = |name: &str, format| {
         let bytes = std::fs::read(folder().join(name)).expect(name);
-        let channels = channels_of(&bytes, format).expect(name);
+        let channels = channels_of(&bytes, format, &ReadParams::default()).expect(name);
         let list: Vec<_> = channels.into_iter().map(|channel| (channel.name, channel.is_height)).collect();
         (bytes, list)
     };
@@ -242,7 +242,7 @@ fn keyence_heights_have_8_16_or_32_bits_and_up_to_three_images() {
     for bits in [8, 16, 32] {
         assert_map("vk4", &read("vk4", &build::vk4(bits, 1), Format::Vk4), 1e-9, 0.0, SIDES);
     }
-    let channels = channels_of(&build::vk4(16, 3), Format::Vk4).expect("three images");
+    let channels = channels_of(&build::vk4(16, 3), Format::Vk4, &ReadParams::default()).expect("three images");
     assert_eq!(
         channels.iter().map(|channel| channel.name.as_str()).collect::<Vec<_>>(),
         ["Height", "Height 2", "Height 3"]
@@ -386,7 +386,7 @@ fn a_damaged_channel_leaves_the_others() {
     assert!(error.contains("samps/line is 'no'"), "{error}");
     // The unit is not a length any more, and a channel without a unit does not have heights.
     let gwy = std::fs::read(folder().join("gwyfile.gwy")).expect("a file");
-    let list = |bytes: &[u8]| channels_of(bytes, Format::Gwy).expect("channels");
+    let list = |bytes: &[u8]| channels_of(bytes, Format::Gwy, &ReadParams::default()).expect("channels");
     assert_eq!(list(&gwy).iter().map(|c| c.is_height).collect::<Vec<_>>(), [false, true]);
     let degrees = replaced(&gwy, "deg\0", "   \0");
     assert_eq!(list(&degrees).iter().map(|c| c.is_height).collect::<Vec<_>>(), [false, true]);

@@ -94,7 +94,7 @@ fn channels_are_listed_and_picked_and_heights_are_the_default() {
         let path = folder().join(name);
         let info = |(name, is_height): &(&str, bool)| ChannelInfo { name: (*name).to_owned(), is_height: *is_height };
         let expected: Vec<ChannelInfo> = listed.iter().map(info).collect();
-        assert_eq!(channels(&path), Ok(expected), "{name}");
+        assert_eq!(channels(&path, &ReadParams::default()), Ok(expected), "{name}");
         let params = |channel: &str| ReadParams { channel: Some(channel.to_owned()), ..ReadParams::default() };
         if listed.len() == 2 {
             let phase = read_with(&path, &params(listed[0].0)).expect(name);

@@ -13,7 +13,7 @@ use rc_heights::{
 fn map(nx: usize, ny: usize, sides: [f64; 2], height: impl Fn(f64, f64) -> f64) -> HeightMap {
     let heights =
         Field::from_fn(Grid::new(nx, ny).expect("a grid"), |DVec2 { x, y }| height(x * sides[0], y * sides[1]));
-    HeightMap { heights, height_unit: Unit::Metre, sides: Some(sides), side_unit: Unit::Metre }
+    HeightMap::new(heights, Unit::Metre, Some(sides), Unit::Metre)
 }
 
 fn treated(map: HeightMap, treatment: Treatment) -> (HeightMap, Effect) {

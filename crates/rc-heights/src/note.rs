@@ -1,0 +1,57 @@
+//! What a reader did with a file beyond copying numbers.
+
+use rc_core::quantity::{count, digits};
+use thiserror::Error;
+
+/// A note of a reader, one line each.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ReadNote {
+    /// No unit of heights is named, so they were taken as metres.
+    #[error("the file names no unit of heights, so they are taken as metres; --unit or --height-scale says otherwise")]
+    HeightsAssumedMetres,
+    /// No unit of the sides is named, so they were taken as metres.
+    #[error("the file names no unit of its sides, so they are taken as metres; --unit says otherwise")]
+    SidesAssumedMetres,
+    /// The first row of the file is the top of the picture, and rows were reversed.
+    #[error("the first row of the file is the top, so rows are reversed: y points up")]
+    RowsReversed,
+    /// Masked points were made missing.
+    #[error("{} masked, so missing; --mask ignore keeps them", are(*points))]
+    Masked {
+        /// Number of masked points.
+        points: usize,
+    },
+    /// The measurement ended before all rows were there.
+    #[error("{rows} of {all} rows are measured; the others are missing")]
+    Unfinished {
+        /// Number of measured rows.
+        rows: usize,
+        /// Number of rows of the whole map.
+        all: usize,
+    },
+    /// The points were moved onto a regular grid.
+    #[error("the points are moved onto a regular grid, by at most {} spacings", digits(*largest, 2))]
+    Moved {
+        /// Largest shift, in spacings.
+        largest: f64,
+    },
+    /// The first column or row has line numbers, not heights, and was omitted.
+    #[error("the first {what} counts lines, so it is omitted")]
+    Counter {
+        /// `column` or `row`.
+        what: &'static str,
+    },
+}
+
+impl ReadNote {
+    /// Whether the note is an assumption that the user should confirm.
+    #[must_use]
+    pub fn is_assumption(&self) -> bool {
+        matches!(self, Self::HeightsAssumedMetres | Self::SidesAssumedMetres)
+    }
+}
+
+fn are(points: usize) -> String {
+    count(points, "point") + if points == 1 { " is" } else { " are" }
+}
