@@ -40,6 +40,14 @@ pub enum FormatError {
         /// Kind of the archive, and what to do.
         what: String,
     },
+    /// The file is of a known kind that is not read.
+    #[error("it is {what}; {cure}")]
+    Other {
+        /// Kind of the file.
+        what: &'static str,
+        /// What to do.
+        cure: &'static str,
+    },
     /// The name is that of a text file, but the bytes are not.
     #[error("it contains NUL bytes, so it is not a text file; save it as UTF-8, or UTF-16 with a byte-order mark")]
     ZeroBytes,

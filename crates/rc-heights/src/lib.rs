@@ -16,8 +16,10 @@
 //! [`Treatment`]s level, fill, crop, flip, filter and resample a map and make it periodic. [`AreaParameters`] are those
 //! of ISO 25178-2. Module [`spectrum`] reads surfaces that are given by Fourier coefficients instead.
 //!
-//! This crate passes on the units of a file, and [`HeightMap::in_metres`] applies them once. Row `iy` of a file is row
-//! `iy` of the field. A missing point is `NaN`.
+//! This crate passes on the units of a file, and [`HeightMap::in_metres`] applies them once. Row 0 of a field is the
+//! lowest, so rows are reversed where the first row of a file is the top of its picture
+//! ([`Format::first_row_is_top`]). A missing point is `NaN`. [`gsf::write`] and [`netcdf::write`] write maps with their
+//! size.
 //!
 //! A reader neither panics nor takes more memory than the bytes of the file justify, for any input. It compares the
 //! sizes in a header with the available bytes before it takes memory. `tests/it/robustness.rs` tests this with
@@ -50,9 +52,10 @@ mod treat;
 mod units;
 
 pub use error::{FormatError, ReadError};
+pub use formats::nc_writer as netcdf;
 pub use formats::{
     ChannelInfo, DEFAULT_MAX_BYTES, Format, Layout, LayoutError, Mask, MaskError, MatArray, ReadParams, channels,
-    channels_of, format_of, mat_arrays, may_have_sides, npy, parse, parse_with, read, read_with, text,
+    channels_of, format_of, gsf, mat_arrays, may_have_sides, npy, parse, parse_with, read, read_with, text,
 };
 pub use map::{BorderStep, HeightMap};
 pub use note::ReadNote;

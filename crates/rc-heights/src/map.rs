@@ -87,6 +87,14 @@ impl HeightMap {
         Ok(self)
     }
 
+    /// Whether the file gives the sides without a unit, and nothing else named one.
+    ///
+    /// Such sides were taken as metres by [`HeightMap::in_metres`]. A size that the user gives is better.
+    #[must_use]
+    pub fn sides_are_assumed(&self) -> bool {
+        self.notes.contains(&ReadNote::SidesAssumedMetres)
+    }
+
     /// Number of points that were not measured.
     #[must_use]
     pub fn missing(&self) -> usize {

@@ -18,12 +18,16 @@ pub(super) const GZIP: &[u8] = b"\x1f\x8b\x08";
 /// Formats by the ends of the names of members.
 const FORMATS: &[(&str, Format)] = &[("main.xml", Format::X3p), ("index.xml", Format::Plux)];
 
-/// Other archives by the names of members, with a description.
+/// Other archives by the names of members, or by their ends from a dot on, with a description.
 const OTHERS: &[(&str, &str)] = &[
     ("xl/workbook.xml", "an Excel workbook; save the sheet as .csv"),
     ("[Content_Types].xml", "an Office document; save the numbers as .csv"),
     ("META-INF/manifest.xml", "an OpenDocument file; save the numbers as .csv"),
-    ("header.properties", "a JPK measurement; export its heights with the instrument's program"),
+    ("header.properties", "a JPK measurement of force curves, not a map of heights; give the image of the heights"),
+    ("3D/3dmodel.model", "a 3MF mesh, not a map; give its heights on a regular grid, as points x y z or as a map"),
+    ("Index/Document.iwa", "a document of Apple Numbers or Pages; save the numbers as .csv"),
+    (".oir", "an Olympus measurement (.poir); export its heights, as text or as .sdf"),
+    (".npy", "an archive of NumPy arrays (.npz); save one of them with numpy.save, as .npy"),
     ("meta.yml", "a container with several maps; unpack it and give one of them"),
 ];
 
@@ -40,8 +44,10 @@ pub(super) fn format_of_zip(path: &Path, bytes: &[u8]) -> Result<Format, FormatE
     let names = names(&archive);
     // Members may be in a folder of the archive.
     let has = |end: &str| {
-        let is =
-            |name: &String| name.strip_suffix(end).is_some_and(|folder| folder.is_empty() || folder.ends_with('/'));
+        let is = |name: &String| {
+            let whole = |folder: &str| folder.is_empty() || folder.ends_with('/') || end.starts_with('.');
+            name.strip_suffix(end).is_some_and(whole)
+        };
         names.iter().any(is)
     };
     if let Some((_, format)) = FORMATS.iter().find(|(name, _)| has(name)) {

@@ -1,8 +1,9 @@
 //! Gwyddion native files, version 2.
 //!
 //! The format is a tree of named, typed, little-endian values. A channel is the object `/N/data`
-//! (<http://gwyddion.net/documentation/user-guide-en/gwyfile-format.html>). Masks are not read: they show what the user
-//! of Gwyddion selected, not what was not measured.
+//! (<http://gwyddion.net/documentation/user-guide-en/gwyfile-format.html>), and its mask is `/N/mask`. Gwyddion has no
+//! other mark for missing points: its readers of instruments fill them and mask them. Masked points are therefore
+//! missing, unless the user ignores masks because they are a selection.
 
 use std::collections::BTreeMap;
 
@@ -13,10 +14,16 @@ use super::channel::{Channel, Channels, each};
 use super::field::field;
 use super::fields::{positive, refused, shown};
 use super::unit;
-use crate::{Format, FormatError, HeightMap, Unit};
+use crate::{Format, FormatError, HeightMap, Mask, ReadNote, Unit};
 
 /// The first bytes.
 pub(super) const MARK: &[u8] = b"GWYP";
+
+/// Names of pixels as a unit of the sides. The size of such a map is not known.
+const PIXELS: [&str; 4] = ["px", "pix", "pixel", "pixels"];
+
+/// Values of a mask from this one on mask a point. Masks are 0 and 1, and fractions after interpolation.
+const MASKED: f64 = 0.5;
 
 /// A value of the tree. Arrays and objects are parsed only when they are needed.
 #[derive(Clone, Copy)]
@@ -36,9 +43,28 @@ type Tree<'a> = Vec<(&'a [u8], Value<'a>)>;
 struct Found<'a> {
     title: Option<&'a [u8]>,
     data: Option<&'a [u8]>,
+    mask: Option<&'a [u8]>,
 }
 
-pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
+impl<'a> Found<'a> {
+    /// Name and channel, or `None` for a title or a mask without data.
+    fn channel(self) -> Option<(String, Result<Channel<'a>, FormatError>)> {
+        let name = String::from_utf8_lossy(self.title.unwrap_or_default()).into_owned();
+        let mask = self.mask;
+        let channel = DataField::of(self.data?).map(|data| Channel {
+            name: name.clone(),
+            is_height: data.height.0 != Unit::NotLength,
+            read: Box::new(move || match mask {
+                Some(mask) => DataField::of(mask)?.applied(data.map()?),
+                None => data.map(),
+            }),
+        });
+        Some((name, channel))
+    }
+}
+
+/// The channels of a file. Masked points are missing if `mask` says so.
+pub(super) fn channels(bytes: &[u8], mask: Mask) -> Channels<'_> {
     let mut bytes = Bytes::new(bytes, Format::Gwy);
     bytes.take(MARK.len())?;
     let Value::Object { name: b"GwyContainer", content } = object(&mut bytes)? else {
@@ -51,21 +77,15 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
             ("data", Value::Object { name: b"GwyDataField", content }) => {
                 found.entry(number).or_default().data = Some(content);
             }
+            ("mask", Value::Object { name: b"GwyDataField", content }) if mask == Mask::Use => {
+                found.entry(number).or_default().mask = Some(content);
+            }
             ("data/title", Value::Text(title)) => found.entry(number).or_default().title = Some(title),
             _ => {}
         }
     }
-    let channels = found.into_values().filter_map(|Found { title, data }| Some((title.unwrap_or_default(), data?)));
-    let channel = |(title, data)| {
-        let name = String::from_utf8_lossy(title).into_owned();
-        let channel = DataField::of(data).map(|data| Channel {
-            name: name.clone(),
-            is_height: data.height.0 != Unit::NotLength,
-            read: Box::new(move || data.map()),
-        });
-        (name, channel)
-    };
-    Ok(each(channels.map(channel).collect()))
+    let channels = found.into_values().filter_map(Found::channel);
+    Ok(each(channels.collect()))
 }
 
 /// Number of the channel and rest of a key such as `/0/data/title`.
@@ -77,7 +97,8 @@ fn channel_of(key: &[u8]) -> Option<(u32, &str)> {
 /// Contents of a data field.
 struct DataField<'a> {
     resolution: [i32; 2],
-    sides: [f64; 2],
+    /// Sides, or `None` where the file does not have them.
+    sides: [Option<f64>; 2],
     /// Name of the unit of the sides.
     side: String,
     height: (Unit, f64),
@@ -86,16 +107,15 @@ struct DataField<'a> {
 
 impl<'a> DataField<'a> {
     fn of(content: &'a [u8]) -> Result<Self, FormatError> {
-        // By the format, missing numbers are 1 and missing units are empty. Numbers without a dimension are not
-        // heights.
+        // By the format, missing units are empty. Numbers without a dimension are not heights.
         let (side, height) = (String::new(), (Unit::NotLength, 1.0));
-        let mut this = Self { resolution: [0; 2], sides: [1.0; 2], side, height, values: &[] };
+        let mut this = Self { resolution: [0; 2], sides: [None; 2], side, height, values: &[] };
         for (key, value) in tree(content)? {
             match (key, value) {
                 (b"xres", Value::Integer(n)) => this.resolution[0] = n,
                 (b"yres", Value::Integer(n)) => this.resolution[1] = n,
-                (b"xreal", Value::Double(side)) => this.sides[0] = side,
-                (b"yreal", Value::Double(side)) => this.sides[1] = side,
+                (b"xreal", Value::Double(side)) => this.sides[0] = Some(side),
+                (b"yreal", Value::Double(side)) => this.sides[1] = Some(side),
                 (b"si_unit_xy", Value::Object { content, .. }) => this.side = unit_name(content)?,
                 (b"si_unit_z", Value::Object { content, .. }) => {
                     let (unit, factor) = unit::of_values(&unit_name(content)?);
@@ -108,16 +128,54 @@ impl<'a> DataField<'a> {
         Ok(this)
     }
 
+    fn grid(&self) -> Result<Grid, FormatError> {
+        let [nx, ny] = self.resolution.map(|n| usize::try_from(n).unwrap_or(0));
+        Ok(Grid::new(nx, ny)?)
+    }
+
     fn map(&self) -> Result<HeightMap, FormatError> {
-        let side = |n: i32| usize::try_from(n).unwrap_or(0);
-        let grid = Grid::new(side(self.resolution[0]), side(self.resolution[1]))?;
+        let grid = self.grid()?;
         let mut values = Number::F64.values_alone(self.values, grid)?;
         crate::map::scale(&mut values, self.height.1);
-        let (side_unit, factor) = unit::of_sides(Format::Gwy, "si_unit_xy", &self.side)?;
-        let x = positive(Format::Gwy, "xreal", self.sides[0] * factor)?;
-        let y = positive(Format::Gwy, "yreal", self.sides[1] * factor)?;
-        let (heights, height_unit) = (field(grid, values), self.height.0);
-        Ok(HeightMap::new(heights, height_unit, Some([x, y]), side_unit))
+        let (sides, side_unit) = self.known_sides()?;
+        Ok(HeightMap::new(field(grid, values), self.height.0, sides, side_unit))
+    }
+
+    /// The sides and their unit.
+    ///
+    /// By the format, a missing side is 1, so the size is not known then. Sides of 1 without a unit are that default too.
+    fn known_sides(&self) -> Result<(Option<[f64; 2]>, Unit), FormatError> {
+        let unknown = Ok((None, Unit::Unnamed));
+        let [Some(x), Some(y)] = self.sides else { return unknown };
+        #[expect(clippy::float_cmp, reason = "the default of the format is exactly 1")]
+        let is_default = self.side.trim().is_empty() && [x, y] == [1.0, 1.0];
+        if is_default || PIXELS.contains(&self.side.trim()) {
+            return unknown;
+        }
+        let (unit, factor) = unit::of_sides(Format::Gwy, "si_unit_xy", &self.side)?;
+        let x = positive(Format::Gwy, "xreal", x * factor)?;
+        let y = positive(Format::Gwy, "yreal", y * factor)?;
+        Ok((Some([x, y]), unit))
+    }
+
+    /// `map` without the points that this field masks.
+    fn applied(&self, mut map: HeightMap) -> Result<HeightMap, FormatError> {
+        let (of_mask, grid) = (self.grid()?, map.heights.grid());
+        if of_mask != grid {
+            let expected = "as many points as the data; --mask ignore reads the map without it";
+            return Err(refused(Format::Gwy, "the mask", &format!("{of_mask} points, for {grid}"), expected));
+        }
+        let mask = Number::F64.values_alone(self.values, grid)?;
+        let masked = |value: &&f64| **value >= MASKED;
+        let points = mask.iter().filter(masked).count();
+        if points == grid.len() {
+            let expected = "one that leaves some points; --mask ignore reads the map without it";
+            return Err(refused(Format::Gwy, "the mask", "one of all points", expected));
+        }
+        for (height, _) in map.heights.values_mut().iter_mut().zip(&mask).filter(|(_, value)| masked(value)) {
+            *height = f64::NAN;
+        }
+        Ok(if points > 0 { map.with_note(ReadNote::Masked { points }) } else { map })
     }
 }
 

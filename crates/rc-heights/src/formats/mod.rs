@@ -10,7 +10,7 @@ mod endian;
 mod field;
 mod fields;
 mod format;
-mod gsf;
+pub mod gsf;
 mod gwy;
 mod heading;
 mod ibw;
@@ -21,9 +21,12 @@ mod mask;
 mod mat;
 mod metropro;
 mod nanoscope;
+pub mod nc_writer;
 mod netcdf;
 pub mod npy;
 mod opd;
+mod order;
+mod other;
 mod plu;
 mod plux;
 mod png;
@@ -166,8 +169,9 @@ fn unreadable(cause: std::io::Error) -> FormatError {
 
 /// Reads the height map at `path`, in the units of the file ([`HeightMap::in_metres`]).
 ///
-/// Row `iy` of the file is row `iy` of the field, and a missing point is `NaN`. If the file has several channels, the
-/// first with heights is read.
+/// Row `iy` of the file is row `iy` of the field, unless the format has its top first ([`Format::first_row_is_top`]): then
+/// rows are reversed, so that y points up, and a note says so. A missing point is `NaN`. If the file has several channels,
+/// the first with heights is read.
 ///
 /// # Errors
 /// [`ReadError`] when the file cannot be read, has an unknown format, is damaged, has no measured point, or has an
@@ -230,7 +234,7 @@ pub fn parse(bytes: &[u8], format: Format) -> Result<HeightMap, FormatError> {
 /// [`FormatError`] when the bytes are not valid, as for [`read_with`].
 pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<HeightMap, FormatError> {
     let channel = chosen(named(in_bytes(bytes, format, params)?), params.channel.as_deref())?;
-    checked((channel.read)()?, params)
+    checked((channel.read)()?, params).map(|map| order::bottom_first(map, bytes, format))
 }
 
 /// The channels of a file of the given format.
@@ -239,7 +243,7 @@ fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &ReadParams) -> Channel
         Format::Al3d => al3d::channels(bytes)?,
         Format::Csv => text::channels(bytes, params.layout)?,
         Format::Gsf => only(move || gsf::parse(bytes)),
-        Format::Gwy => gwy::channels(bytes)?,
+        Format::Gwy => gwy::channels(bytes, params.mask)?,
         Format::Hdf5 | Format::NetCdf => netcdf::channels(bytes, format)?,
         Format::Ibw => ibw::channels(bytes)?,
         Format::Mat => mat::channels(bytes)?,

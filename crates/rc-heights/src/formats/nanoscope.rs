@@ -5,6 +5,8 @@
 //!
 //! A value is integer / 256^bytes x `Z scale` x the sensitivity that `Z scale` names. It is a length if the unit of the
 //! product is a length. Other channels have a unit of the file that the map does not name.
+//!
+//! A scan that was stopped has `Valid data` of fewer lines, or fewer lines in the file. The other lines are missing.
 
 use rc_core::Grid;
 
@@ -12,7 +14,7 @@ use super::binary::Number;
 use super::channel::{Channel, Channels, each, is_topography};
 use super::fields::{factor, refused};
 use super::instrument::{Places, map, metres, scale_measured, sides, text};
-use crate::{Format, FormatError, HeightMap};
+use crate::{Format, FormatError, HeightMap, ReadNote};
 
 /// The first line.
 pub(super) const MARK: &[u8] = b"\\*File list\r\n";
@@ -21,6 +23,9 @@ pub(super) const MARK: &[u8] = b"\\*File list\r\n";
 ///
 /// If `Bytes/pixel` is 2, it only determines the scale.
 const FOUR_BYTES: u32 = 0x0920_0000;
+
+/// Most points of an image for each point that was measured before the scan was stopped.
+const MOST_MISSING: usize = 1024;
 
 /// A list of the header: `\*name`, then lines of `\key: value`. Names and keys are in lower case.
 struct List {
@@ -47,6 +52,18 @@ struct Image {
     scale: f64,
     is_height: bool,
     sides: [f64; 2],
+    stored: Stored,
+}
+
+/// The part of an image that was measured, and how it is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Stored {
+    /// First column and line of what was measured, from 0.
+    start: [usize; 2],
+    /// Columns and lines of what was measured.
+    length: [usize; 2],
+    /// First column and line, and columns and lines of the integers in the file.
+    block: [[usize; 2]; 2],
 }
 
 pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
@@ -85,9 +102,74 @@ fn channel<'a>(list: &List, globals: &[&List], version: u32, bytes: &'a [u8]) ->
 
 fn read(data: &[u8], image: &Image) -> Result<HeightMap, FormatError> {
     let scale = factor(Format::Nanoscope, "Z scale", image.scale)?;
-    let mut values = image.number.values(data, image.grid)?;
+    let (grid, stored) = (image.grid, image.stored);
+    let (mut values, lines) = if stored == Stored::whole(grid) {
+        (image.number.values(data, grid)?, grid.ny())
+    } else {
+        (stored.placed(data, image.number, grid)?, stored.length[1])
+    };
     scale_measured(&mut values, scale, |_| false);
-    Ok(map(image.grid, values, image.is_height, Some(image.sides)))
+    let map = map(grid, values, image.is_height, Some(image.sides));
+    let unfinished = ReadNote::Unfinished { rows: lines, all: grid.ny() };
+    Ok(if lines < grid.ny() { map.with_note(unfinished) } else { map })
+}
+
+impl Stored {
+    /// An image that was measured completely.
+    fn whole(grid: Grid) -> Self {
+        let length = [grid.nx(), grid.ny()];
+        Self { start: [0; 2], length, block: [[0; 2], length] }
+    }
+
+    /// What a list says of an image of `grid` whose integers of `size` bytes have `bytes` bytes.
+    fn of(list: &List, grid: Grid, size: usize, bytes: usize) -> Self {
+        let all = [grid.nx(), grid.ny()];
+        let number = |key| list.get(key).and_then(|text| text.parse::<usize>().ok());
+        let keys = [("valid data start x", "valid data len x"), ("valid data start y", "valid data len y")];
+        let (mut start, mut length) = ([0; 2], all);
+        for (i, (of_start, of_length)) in keys.into_iter().enumerate() {
+            // Images that a program has cropped or resampled may keep the numbers of the scan.
+            if let (first, Some(n)) = (number(of_start).unwrap_or(0), number(of_length))
+                && first < all[i]
+                && n > 0
+            {
+                (start[i], length[i]) = (first, n.min(all[i] - first));
+            }
+        }
+        let lines = bytes / size / all[0].max(1);
+        let block = if lines >= all[1] {
+            [[0; 2], all]
+        } else if bytes == size * length[0] * length[1] {
+            // Only what was measured is stored.
+            [start, length]
+        } else {
+            // Lines from the measured ones on, or else from the first on.
+            let first = if lines <= length[1] { start[1] } else { 0 };
+            [[0, first], [all[0], lines.min(all[1] - first)]]
+        };
+        let end = (start[1] + length[1]).min(block[0][1] + block[1][1]);
+        length[1] = end.saturating_sub(start[1]);
+        Self { start, length, block }
+    }
+
+    /// The integers of `grid`, `NaN` where nothing was measured.
+    fn placed(self, data: &[u8], number: Number, grid: Grid) -> Result<Vec<f64>, FormatError> {
+        let [[bx, by], [columns, rows]] = self.block;
+        // A promise of many more lines than there are is damage. It is refused before memory is taken.
+        if columns * rows < grid.len() / MOST_MISSING || rows == 0 {
+            let (needed, found) = (number.bytes_of(grid), (number.size() * columns * rows) as u64);
+            return Err(FormatError::CutShort { grid, needed, found });
+        }
+        let stored = number.values(data, Grid::new(columns, rows)?)?;
+        let mut values = vec![f64::NAN; grid.len()];
+        let [x, y] = self.start;
+        for iy in y..y + self.length[1] {
+            let row = &stored[(iy - by) * columns..][..columns];
+            let at = iy * grid.nx() + x;
+            values[at..at + self.length[0]].copy_from_slice(&row[x - bx..][..self.length[0]]);
+        }
+        Ok(values)
+    }
 }
 
 /// The lists at the start of the file. Only their lines begin with a backslash.
@@ -132,13 +214,7 @@ fn value_of<'a>(list: &'a List, key: &str) -> Option<&'a str> {
 fn image(list: &List, globals: &[&List], version: u32) -> Result<Image, FormatError> {
     let mut grid = Grid::new(list.number("samps/line")?, list.number("number of lines")?)?;
     let length: usize = list.number("data length")?;
-    let scaled: i32 = if list.get("bytes/pixel").is_some() { list.number("bytes/pixel")? } else { 2 };
-    let four = version >= FOUR_BYTES && length >= 4 * grid.len();
-    let number = match scaled {
-        2 if !four => Number::I16,
-        2 | 4 => Number::I32,
-        other => return Err(refused(Format::Nanoscope, "Bytes/pixel", &other, "2 or 4")),
-    };
+    let number = number(list, version, length, grid)?;
     let mut size = size(list, globals, grid)?;
     // Some images have a wrong size in their list. The size of the scan is then right.
     if let Some(whole) = whole(globals).filter(|whole| *whole != grid)
@@ -152,7 +228,22 @@ fn image(list: &List, globals: &[&List], version: u32) -> Result<Image, FormatEr
     let z = value_of(list, "z scale").ok_or(FormatError::Missing { format: Format::Nanoscope, field: "Z scale" })?;
     let (unit, is_height) =
         scale(z, globals).ok_or_else(|| refused(Format::Nanoscope, "Z scale", z, "a number and a unit"))?;
-    Ok(Image { grid, number, scale: unit / 256_f64.powi(scaled), is_height, sides })
+    let scaled: i32 = if list.get("bytes/pixel").is_some() { list.number("bytes/pixel")? } else { 2 };
+    let stored = Stored::of(list, grid, number.size(), length);
+    Ok(Image { grid, number, scale: unit / 256_f64.powi(scaled), is_height, sides, stored })
+}
+
+/// The type of the integers of an image with `length` bytes.
+fn number(list: &List, version: u32, length: usize, grid: Grid) -> Result<Number, FormatError> {
+    let scaled: i32 = if list.get("bytes/pixel").is_some() { list.number("bytes/pixel")? } else { 2 };
+    // Some files of a newer version keep two bytes. Their length is that of all points, or of the measured ones.
+    let two = [grid.ny(), list.number("valid data len y").unwrap_or(0)].map(|lines| 2 * grid.nx() * lines);
+    let four = version >= FOUR_BYTES && !two.contains(&length);
+    match scaled {
+        2 if !four => Ok(Number::I16),
+        2 | 4 => Ok(Number::I32),
+        other => Err(refused(Format::Nanoscope, "Bytes/pixel", &other, "2 or 4")),
+    }
 }
 
 fn global<'a>(globals: &[&'a List], key: &str) -> Option<&'a str> {

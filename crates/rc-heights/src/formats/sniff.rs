@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::archive::{self, ZIP};
 use super::decode::is_text;
-use super::{Format, al3d, gsf, gwy, ibw, mat, metropro, nanoscope, opd, sur, vk4, xyz};
+use super::{Format, al3d, gsf, gwy, ibw, mat, metropro, nanoscope, opd, other, sur, vk4, xyz};
 use crate::FormatError;
 
 /// The signature of HDF5.
@@ -68,9 +68,15 @@ impl Format {
     /// # Errors
     /// - [`FormatError::Mark`] when the name belongs to a format with other first bytes.
     /// - [`FormatError::Container`] or [`FormatError::Archive`] for a zip archive that is damaged or not a height map.
+    /// - [`FormatError::Other`] for a file of a known kind that is not read.
     /// - [`FormatError::ZeroBytes`] when the name is that of a text, and the bytes are not a text.
     /// - [`FormatError::Unknown`] when the format cannot be determined.
     pub fn of(path: &Path, start: &[u8]) -> Result<Self, FormatError> {
+        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+        let extension = extension.as_deref();
+        if let Some(other) = other::in_container(extension, start) {
+            return Err(other);
+        }
         if let Some((_, format)) = MARKS.iter().find(|(mark, _)| start.starts_with(mark)) {
             return Ok(*format);
         }
@@ -83,9 +89,16 @@ impl Format {
         if [512, 1024, 2048].iter().any(|at| start.get(*at..).is_some_and(|rest| rest.starts_with(HDF5))) {
             return Ok(Self::Hdf5);
         }
+        if let Some(other) = other::marked(extension, start) {
+            return Err(other);
+        }
+        Self::of_extension(extension, start)
+    }
+
+    /// The format of a file without a mark.
+    fn of_extension(extension: Option<&str>, start: &[u8]) -> Result<Self, FormatError> {
         let mark = |format, expected| Err(FormatError::Mark { format, expected });
-        let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-        match extension.as_deref() {
+        match extension {
             Some("xyz") => Ok(Self::Xyz),
             // Lines of three numbers are points. Few maps have only three columns.
             Some("csv" | "txt" | "tsv" | "dat" | "asc") if is_text(start) => {
@@ -98,9 +111,10 @@ impl Format {
             Some("gwy") => mark(Self::Gwy, "it must begin with GWYP"),
             Some("h5" | "hdf5" | "nc4") => mark(Self::Hdf5, "it must begin with \\x89HDF"),
             Some("ibw") => mark(Self::Ibw, "it must begin with the headers of version 5, 384 bytes"),
-            Some("mat") => {
-                mark(Self::Mat, "it must begin with 'MATLAB 5.0 MAT-file' or be HDF5; save it with -v6, -v7 or -v7.3")
-            }
+            Some("mat") => mark(
+                Self::Mat,
+                "it must begin with 'MATLAB 5.0 MAT-file' or be HDF5; save one of version 4 again with -v6, -v7 or -v7.3",
+            ),
             Some("nc") => mark(Self::NetCdf, "it must begin with CDF or be HDF5"),
             Some("sdf") => mark(Self::Sdf, "it must begin with aISO-1.0 or bISO-1.0"),
             Some("x3p") => mark(Self::X3p, "it must be a zip archive"),
@@ -113,7 +127,7 @@ impl Format {
             Some("plu") => Ok(Self::Plu),
             Some("plux") => mark(Self::Plux, "it must be a zip archive"),
             Some("vk4") => mark(Self::Vk4, "it must begin with VK4_"),
-            _ => Err(FormatError::Unknown),
+            _ => Err(extension.and_then(other::named).unwrap_or(FormatError::Unknown)),
         }
     }
 }

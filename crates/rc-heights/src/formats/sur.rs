@@ -23,11 +23,27 @@ pub(super) const COMPRESSED: &[u8] = b"DSCOMPRESSED";
 
 const HEADER: usize = 512;
 
-/// The type of objects that are profiles.
+/// The type of objects that are profiles. Gwyddion gives it to surfaces too.
 const PROFILE: u16 = 1;
 
 /// The types of objects with a spectrum at each point.
 const SPECTRA: [u16; 2] = [20, 21];
+
+/// Types of objects whose values are levels of grey or colours: a binary image, images of intensity and of colours.
+const PICTURES: [u16; 4] = [3, 10, 12, 18];
+
+/// Types of objects that are not maps on a rectangle, with a description.
+///
+/// The types are those of Digital Surf, as RosettaSciIO lists them.
+const OTHERS: [(u16, &str); 7] = [
+    (4, "a series of profiles, not a map"),
+    (6, "a disc in polar coordinates"),
+    (7, "a profile of several layers, not a map"),
+    (9, "a disc in polar coordinates"),
+    (14, "a force curve, not a map"),
+    (15, "a series of force curves, not a map"),
+    (17, "a contour, not a map"),
+];
 
 /// Maximum number of bytes that deflate makes of one byte. Claims beyond that are false.
 const MOST_INFLATION: u64 = 1032;
@@ -37,7 +53,7 @@ struct Object<'a> {
     name: String,
     grid: Grid,
     number: Number,
-    is_profile: bool,
+    kind: u16,
     /// Number of values at a point: 1, or the length of its spectrum.
     values: usize,
     compressed: bool,
@@ -66,9 +82,12 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
         };
         let stored = object.stored();
         let data = object.data;
-        let (name, is_height) = (object.name.clone(), object.is_height);
-        let read = Box::new(move || object.read());
-        channels.push((name.clone(), Ok(Channel { name, is_height, read })));
+        let (name, is_height) = (object.name.clone(), object.is_height && !PICTURES.contains(&object.kind));
+        let channel = object.is_map().map(|()| {
+            let read = Box::new(move || object.read(is_height));
+            Channel { name: name.clone(), is_height, read }
+        });
+        channels.push((name, channel));
         rest = stored.and_then(|stored| data.get(stored..)).unwrap_or_default();
         // A later object that is cut off before its integers does not prevent reading the others.
         if !(rest.starts_with(PLAIN) || rest.starts_with(COMPRESSED)) || rest.len() < HEADER {
@@ -111,7 +130,7 @@ fn object(bytes: &[u8]) -> Result<Object<'_>, FormatError> {
         name: name.unwrap_or_default(),
         grid,
         number,
-        is_profile: header.u16(18)? == PROFILE,
+        kind: header.u16(18)?,
         values: if SPECTRA.contains(&header.u16(18)?) { header.size(94)?.max(1) } else { 1 },
         compressed: bytes.starts_with(COMPRESSED),
         missing: if header.u16(86)? == 1 { Some(f64::from(header.i32(100)?) - 2.0) } else { None },
@@ -124,15 +143,22 @@ fn object(bytes: &[u8]) -> Result<Object<'_>, FormatError> {
 }
 
 impl Object<'_> {
-    fn read(&self) -> Result<HeightMap, FormatError> {
-        if self.is_profile {
-            let (what, cure) = ("a profile".to_owned(), "a map of heights is needed: save the surface");
-            return Err(FormatError::Unsupported { format: Format::Sur, what, cure });
-        }
-        if self.values > 1 {
-            let (what, cure) = (format!("an object of {} values a point", self.values), "save a map of one of them");
-            return Err(FormatError::Unsupported { format: Format::Sur, what, cure });
-        }
+    /// An error for an object that is not a map.
+    fn is_map(&self) -> Result<(), FormatError> {
+        let other = OTHERS.iter().find(|(kind, _)| *kind == self.kind).map(|(_, what)| *what);
+        let (what, cure) = if self.kind == PROFILE && self.grid.ny() == 1 {
+            ("a profile, not a map,".to_owned(), "a map of heights is needed: save the surface")
+        } else if let Some(what) = other {
+            (what.to_owned(), "a map of heights is needed: save the surface")
+        } else if self.values > 1 {
+            (format!("an object of {} values a point", self.values), "save a map of one of them")
+        } else {
+            return Ok(());
+        };
+        Err(FormatError::Unsupported { format: Format::Sur, what, cure })
+    }
+
+    fn read(&self, is_height: bool) -> Result<HeightMap, FormatError> {
         let inflated = if self.compressed { Some(self.inflated()?) } else { None };
         let mut values = self.number.values(inflated.as_deref().unwrap_or(self.data), self.grid)?;
         // Heights of a replica are negative. The file says so, and along which axis the replica is mirrored.
@@ -145,7 +171,7 @@ impl Object<'_> {
             }
         }
         flip(&mut values, self.grid, [self.inversion == 2, self.inversion == 3]);
-        Ok(map(self.grid, values, self.is_height, self.sides))
+        Ok(map(self.grid, values, is_height, self.sides))
     }
 
     /// The number of streams, and for each its length after and before decompression.

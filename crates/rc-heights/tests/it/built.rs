@@ -6,6 +6,7 @@ use rc_heights::{Format, HeightMap, LengthUnit, Scales, Unit, parse};
 use zip::CompressionMethod;
 
 use crate::build;
+use crate::files::as_stored;
 use crate::parts::HEIGHTS;
 
 /// Asserts that heights are `scale` times 1 to 6 plus `offset`, within rounding.
@@ -22,8 +23,9 @@ pub(crate) fn assert_map(name: &str, map: &HeightMap, scale: f64, offset: f64, s
     assert!(map.sides.iter().zip(&sides).all(difference), "{name}: {:?}, expected {sides:?}", map.sides);
 }
 
+/// The map of a file, with rows in the order of the file.
 pub(crate) fn read(name: &str, bytes: &[u8], format: Format) -> HeightMap {
-    parse(bytes, format).unwrap_or_else(|error| panic!("{name}: {error}"))
+    as_stored(parse(bytes, format).unwrap_or_else(|error| panic!("{name}: {error}")))
 }
 
 #[test]
@@ -70,6 +72,14 @@ fn a_simple_field_has_its_units() {
     let bare = read("gsf", &build::gsf("XRes=3\nYRes=2\n"), Format::Gsf);
     assert_map("gsf", &bare, 1.0, 0.0, None);
     assert_eq!((map.height_unit, bare.height_unit), (Unit::Metre, Unit::Unnamed));
+    // Sides of 1 without a unit are the default of the format. Others are lengths in a unit that is not named.
+    let unnamed =
+        |side: f64| read("gsf", &build::gsf(&format!("XRes=3\nYRes=2\nXReal={side}\nYReal={side}\n")), Format::Gsf);
+    assert_eq!(unnamed(1.0).sides, None);
+    assert_eq!((unnamed(6.0).sides, unnamed(6.0).side_unit), (Some([6.0, 6.0]), Unit::Unnamed));
+    let assumed =
+        |unit| unnamed(6.0).in_metres(Scales { unit, height_scale: None }).expect("lengths").sides_are_assumed();
+    assert_eq!((assumed(None), assumed(Some(LengthUnit::Micrometre))), (true, false));
     for other in ["V", "A"] {
         let map = read("gsf", &build::gsf(&format!("XRes=3\nYRes=2\nZUnits={other}\n")), Format::Gsf);
         assert_eq!(map.height_unit, Unit::NotLength, "{other}");
@@ -274,5 +284,34 @@ fn deep_brackets_in_an_array_header_do_not_overflow_the_stack() {
         let bytes = [b"\x93NUMPY\x01\x00".as_slice(), &(length as u16).to_le_bytes(), header.as_bytes()].concat();
         let error = parse(&bytes, Format::Npy).expect_err("brackets").to_string();
         assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
+fn what_gsf_and_netcdf_files_store_is_read_back() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    // Heights in units of 2 µm that 32-bit floats do not have, a missing point, and points 0.1 µm x 0.3 µm apart.
+    for (nx, ny) in [(1, 1), (3, 2), (17, 5), (64, 33)] {
+        let grid = rc_core::Grid::new(nx, ny).expect("a grid");
+        let height = |i: usize| if i == 1 { f64::NAN } else { (i as f64 * 0.7).sin() / 3.0 };
+        let field = rc_core::Field::new(grid, (0..grid.len()).map(height).collect()).expect("heights");
+        let sides = [0.1e-6 * nx as f64, 0.3e-6 * ny as f64];
+        let (gsf, nc) = (dir.path().join("map.gsf"), dir.path().join("map.nc"));
+        rc_heights::gsf::write(&gsf, &field, 2e-6, sides).expect("a file");
+        rc_heights::netcdf::write(&nc, &field, 2e-6, sides).expect("a file");
+        for (path, single) in [(gsf, true), (nc, false)] {
+            if nx == 1 && !single {
+                // A single coordinate has no spacing.
+                continue;
+            }
+            let map = rc_heights::read(&path).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!((map.heights.grid(), map.height_unit, map.side_unit), (grid, Unit::Metre, Unit::Metre));
+            let stored = |height: &f64| if single { f64::from((height * 2e-6) as f32) } else { height * 2e-6 };
+            let same = map.heights.values().iter().zip(field.values()).all(|(a, b)| a.to_bits() == stored(b).to_bits());
+            assert!(same, "{}: {nx} x {ny}", path.display());
+            let found = map.sides.expect("sides");
+            let close = |i: usize| (found[i] / sides[i] - 1.0).abs() < if single { 1e-15 } else { 1e-12 };
+            assert!(close(0) && close(1), "{}: {found:?}, expected {sides:?}", path.display());
+        }
     }
 }

@@ -3,14 +3,25 @@
 use std::path::{Path, PathBuf};
 
 use rc_core::Field;
-use rc_heights::{AreaParameters, FormatError, HeightMap, Unit, read};
+use rc_heights::{AreaParameters, FormatError, HeightMap, ReadNote, Unit, read};
 
 pub(crate) fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/formats")
 }
 
+/// The map of a file, with rows in the order of the file.
 pub(crate) fn map(name: &str) -> HeightMap {
-    read(&folder().join(name)).unwrap_or_else(|error| panic!("{error}"))
+    as_stored(read(&folder().join(name)).unwrap_or_else(|error| panic!("{error}")))
+}
+
+/// The map with rows in the order of its file.
+pub(crate) fn as_stored(mut map: HeightMap) -> HeightMap {
+    if map.notes.contains(&ReadNote::RowsReversed) {
+        let nx = map.heights.grid().nx();
+        map.heights.values_mut().reverse();
+        map.heights.values_mut().chunks_mut(nx).for_each(<[f64]>::reverse);
+    }
+    map
 }
 
 /// The heights of all files, in nm.
@@ -88,7 +99,7 @@ fn a_file_is_known_by_its_first_bytes_whatever_it_is_called() {
     let dir = tempfile::tempdir().expect("a temporary folder");
     let other = dir.path().join("map.dat");
     std::fs::copy(folder().join("surfalize.x3p"), &other).expect("a copy");
-    assert_eq!(read(&other).expect("a map").heights, map("surfalize.x3p").heights);
+    assert_eq!(as_stored(read(&other).expect("a map")).heights, map("surfalize.x3p").heights);
     for (name, expected) in
         [("map.grd", "DSAA"), ("map.sdf", "aISO-1.0"), ("map.abc", ".npy"), ("map.npy", "not a valid npy")]
     {

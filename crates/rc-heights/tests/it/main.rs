@@ -8,6 +8,8 @@ mod build_instruments;
 mod built;
 mod files;
 mod instruments;
+mod kinds;
+mod orders;
 mod parts;
 mod programs;
 mod robustness;

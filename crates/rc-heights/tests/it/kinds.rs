@@ -1,0 +1,86 @@
+//! Tests of files that are not read: a message names them.
+
+use rc_heights::{Format, FormatError, read};
+
+/// Names, first bytes, and what the message says.
+const FILES: &[(&str, &[u8], &str)] = &[
+    ("a.jpk", b"II*\0more", "a JPK image"),
+    ("a.jpk", b"other", "a JPK image"),
+    ("a.jpk-force", b"other", "force curves"),
+    ("scan.stp", b"WSxM file copyright Nanotec Electronica\r\nSxM Image file\r\nImage header size: 1024", "a WSxM image"),
+    ("scan.top", b"\0\0", "a WSxM file"),
+    ("part.stl", b"\0\0\0\0", "an STL mesh"),
+    ("part.txt", b"solid part\n facet normal 0 0 1\n", "an STL mesh"),
+    ("part.obj", b"v 0 0 0\n", "a mesh"),
+    ("part.dat", b"ply\nformat ascii 1.0\n", "a PLY mesh"),
+    ("a.off", b"OFF\n3 1 0\n", "an OFF mesh"),
+    ("a.pcd", b"# .PCD v.7\n", "a point cloud"),
+    ("a.datx", b"\x89HDF\r\n\x1a\n", "a Zygo file"),
+    ("a.vk6", b"VK6\0", "a Keyence file"),
+    ("a.zon", b"KPK0", "a Keyence file (.zon)"),
+    ("a.nid", b"[DataSet]\r\n", "a Nanosurf file"),
+    ("a.OPDx", b"VCA DATA\x01\0\0\x55", "(.opdx)"),
+    ("a.mnt", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "a document of Mountains"),
+    ("a.xls", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "an old Excel workbook"),
+    ("a.dat", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "a document of Office"),
+    ("a.pro", b"other", "not a surface"),
+    ("a.lext", b"II*\0", "Olympus LEXT"),
+    ("a.csv", b"\xff\xd8\xff\xe0", "a JPEG picture"),
+    ("a.bmp", b"BM\0\0", "a BMP picture"),
+    ("a.gif", b"GIF89a", "a GIF picture"),
+    ("a", b"%PDF-1.7", "a PDF"),
+    ("a.pkl", b"\x80\x04\x95", "a Python pickle"),
+    ("a.opj", b"CPYA 4.3", "an Origin project"),
+    ("a.vtk", b"# vtk DataFile Version 3.0\n", "a VTK file"),
+    ("a.vti", b"<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\">", "a VTK file"),
+    ("a.gwy", b"GWYO", "a file of Gwyddion 1"),
+    ("a.hdf", b"\x0e\x03\x13\x01", "an HDF4 file"),
+    ("a.csv.zst", b"\x28\xb5\x2f\xfd", "packed by zstd"),
+    ("a.csv.xz", b"\xfd7zXZ\0", "packed by xz"),
+    ("a.csv.bz2", b"BZh91AY", "packed by bzip2"),
+    ("a.7z", b"7z\xbc\xaf\x27\x1c", "an archive (7z)"),
+    ("a.rar", b"Rar!\x1a\x07\x01\0", "an archive (rar)"),
+    ("a.mat", b"\0\0\0\0", "version 4"),
+];
+
+#[test]
+fn a_file_of_another_kind_is_named_with_what_to_do() {
+    for (name, start, expected) in FILES {
+        let error = Format::of(name.as_ref(), start).expect_err(name).to_string();
+        assert!(error.contains(expected) && error.contains(';') && error.lines().count() == 1, "{name}: {error}");
+        assert!(error.len() < 200, "{name}: {error}");
+    }
+}
+
+#[test]
+fn formats_that_are_read_are_not_taken_for_another_kind() {
+    for (name, _, bytes) in crate::build::all() {
+        for extension in ["csv", "stl", "bmp", "pkl", "xls", "dat"] {
+            let found = Format::of(format!("map.{extension}").as_ref(), &bytes);
+            // Texts, and formats without a mark, are known by their names only.
+            let is_named = matches!(found, Err(FormatError::Other { .. })) && bytes.starts_with(b"\x89");
+            assert!(!is_named, "{name}.{extension}: {found:?}");
+        }
+    }
+    // Tables that begin like another kind.
+    for text in ["BM,1,2,3\n1,2,3,4\n", "solid 1 2\n1 2\n", "WSxM file copyright\nWSxM ASCII Matrix file\n1 2\n"] {
+        assert_eq!(Format::of("map.csv".as_ref(), text.as_bytes()), Ok(Format::Csv), "{text}");
+    }
+}
+
+#[test]
+fn archives_of_arrays_and_of_force_curves_are_named() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    for (name, member, expected) in [
+        ("maps.npz", "heights.npy", "numpy.save"),
+        ("curves.jpk-force", "header.properties", "force curves"),
+        ("scan.poir", "data/a.oir", "Olympus"),
+        ("part.3mf", "3D/3dmodel.model", "mesh"),
+    ] {
+        let path = dir.path().join(name);
+        let bytes = crate::parts::zipped(&[(member, b"x".as_slice())], zip::CompressionMethod::Stored);
+        std::fs::write(&path, bytes).expect("an archive");
+        let error = read(&path).expect_err(name).to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+}
