@@ -62,6 +62,36 @@ pub(crate) fn gsf(fields: &str) -> Vec<u8> {
     [bytes, f32s(HEIGHTS)].concat()
 }
 
+/// A component of a tree of Gwyddion: name, type and value.
+fn gwy_value(name: &str, kind: u8, value: &[u8]) -> Vec<u8> {
+    [name.as_bytes(), &[0, kind], value].concat()
+}
+
+fn gwy_object(name: &str, content: &[u8]) -> Vec<u8> {
+    [name.as_bytes(), &[0], &(content.len() as u32).to_le_bytes(), content].concat()
+}
+
+/// A data field of `grid` points with a unit of the sides, which are `sides` if they are given.
+pub(crate) fn gwy_field(grid: [u32; 2], sides: Option<[f64; 2]>, unit: &str, values: &[f64]) -> Vec<u8> {
+    let si_unit = |name: &str| gwy_object("GwySIUnit", &gwy_value("unitstr", b's', &[name.as_bytes(), &[0]].concat()));
+    let mut content = gwy_value("xres", b'i', &grid[0].to_le_bytes());
+    content.extend(gwy_value("yres", b'i', &grid[1].to_le_bytes()));
+    for (name, side) in ["xreal", "yreal"].into_iter().zip(sides.into_iter().flatten()) {
+        content.extend(gwy_value(name, b'd', &side.to_le_bytes()));
+    }
+    content.extend(gwy_value("si_unit_xy", b'o', &si_unit(unit)));
+    content.extend(gwy_value("si_unit_z", b'o', &si_unit("nm")));
+    let count = (values.len() as u32).to_le_bytes();
+    content.extend(gwy_value("data", b'D', &[count.to_vec(), f64s(values.iter().copied())].concat()));
+    gwy_object("GwyDataField", &content)
+}
+
+/// A file with these fields, each with its key.
+pub(crate) fn gwy(fields: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    let content: Vec<u8> = fields.iter().flat_map(|(key, field)| gwy_value(key, b'o', field)).collect();
+    [b"GWYP".to_vec(), gwy_object("GwyContainer", &content)].concat()
+}
+
 pub(crate) const GSF_FIELDS: &str =
     "XRes = 3\nYRes=2\nXReal = 6e-6\nYReal = 9e-6\nXYUnits = m\nZUnits = nm\nTitle = h\n";
 

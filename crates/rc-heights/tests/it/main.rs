@@ -9,6 +9,7 @@ mod built;
 mod files;
 mod instruments;
 mod kinds;
+mod masks;
 mod orders;
 mod parts;
 mod programs;
