@@ -2,11 +2,12 @@
 //!
 //! The name is used if the format has no mark.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use super::archive::{self, ZIP};
-use super::decode::is_text;
-use super::{Format, al3d, gsf, gwy, ibw, mat, metropro, nanoscope, opd, sur, vk4, xyz};
+use super::decode::{decoded, is_text};
+use super::{Format, al3d, esri, gsf, gwy, ibw, mat, metropro, nanoscope, opd, strangers, sur, vk4, xyz, zygo};
 use crate::FormatError;
 
 /// The signature of HDF5.
@@ -67,7 +68,7 @@ impl Format {
     ///
     /// # Errors
     /// - [`FormatError::Mark`] when the name belongs to a format with other first bytes.
-    /// - [`FormatError::Container`] or [`FormatError::Archive`] for a zip archive that is damaged or not a height map.
+    /// - [`FormatError::Container`] or [`FormatError::Other`] for a zip archive that is damaged or not a height map.
     /// - [`FormatError::ZeroBytes`] when the name is that of a text, and the bytes are not a text.
     /// - [`FormatError::Unknown`] when the format cannot be determined.
     pub fn of(path: &Path, start: &[u8]) -> Result<Self, FormatError> {
@@ -82,6 +83,9 @@ impl Format {
         }
         if [512, 1024, 2048].iter().any(|at| start.get(*at..).is_some_and(|rest| rest.starts_with(HDF5))) {
             return Ok(Self::Hdf5);
+        }
+        if let Some(format) = of_text(start)? {
+            return Ok(format);
         }
         let mark = |format, expected| Err(FormatError::Mark { format, expected });
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
@@ -115,5 +119,21 @@ impl Format {
             Some("vk4") => mark(Self::Vk4, "it must begin with VK4_"),
             _ => Err(FormatError::Unknown),
         }
+    }
+}
+
+/// The format of a text that its first words determine, whatever its name.
+///
+/// # Errors
+/// [`FormatError::Other`] for a file of a program that is not a height map.
+fn of_text(start: &[u8]) -> Result<Option<Format>, FormatError> {
+    // A file that was unpacked is here completely.
+    let start = &start[..start.len().min(4096)];
+    let text = if is_text(start) { decoded(start) } else { Cow::Borrowed("") };
+    let begins = |words: &str| text.trim_start().starts_with(words);
+    match strangers::named(&text) {
+        Some(what) => Err(FormatError::Other { what: what.to_owned() }),
+        None if begins(zygo::XYZ) || begins(zygo::ASCII) => Ok(Some(Format::Zygo)),
+        None => Ok(esri::is_grid(&text).then_some(Format::EsriGrid)),
     }
 }
