@@ -34,19 +34,17 @@ pub enum FormatError {
          MetroPro, .al3d, .plu, .plux, .vk4), or an image (.png, .tif)"
     )]
     Unknown,
-    /// The file is an archive that is not a height map.
+    /// The file is an archive, or belongs to a program, and is not a height map.
     #[error("it is {what}")]
-    Archive {
-        /// Kind of the archive, and what to do.
+    Other {
+        /// Kind of the file, and what to do.
         what: String,
     },
-    /// The file is of a known kind that is not read.
-    #[error("it is {what}; {cure}")]
-    Other {
-        /// Kind of the file.
+    /// The file is a profile.
+    #[error("{what} is a profile, and a map is needed: a row of heights in each line, or a point x y z")]
+    Profile {
+        /// What the file has.
         what: &'static str,
-        /// What to do.
-        cure: &'static str,
     },
     /// The name is that of a text file, but the bytes are not.
     #[error("it contains NUL bytes, so it is not a text file; save it as UTF-8, or UTF-16 with a byte-order mark")]

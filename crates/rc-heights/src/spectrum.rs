@@ -87,7 +87,7 @@ fn parse_text(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
 
 fn coefficient(line: usize, row: &str) -> Result<Coefficient, FormatError> {
     let (mut values, mut found) = ([0.0; 4], 0);
-    let (words, comma) = words(row);
+    let (words, comma) = words(row.trim());
     for word in words {
         if let Some(value) = values.get_mut(found) {
             let no_number = || FormatError::NoNumber { line, value: found + 1, text: shown(word) };

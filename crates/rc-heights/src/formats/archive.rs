@@ -59,7 +59,7 @@ pub(super) fn format_of_zip(path: &Path, bytes: &[u8]) -> Result<Format, FormatE
         let first: Vec<String> = names.iter().take(3).map(|name| shown(name)).collect();
         format!("a zip archive with {}{more}; unpack it and give one of its files", first.join(", "))
     };
-    Err(FormatError::Archive { what: other.unwrap_or_else(listed) })
+    Err(FormatError::Other { what: other.unwrap_or_else(listed) })
 }
 
 /// The error for a zip archive that cannot be opened.
@@ -68,7 +68,7 @@ fn damaged(path: &Path) -> FormatError {
     let format = match extension.as_deref() {
         Some("x3p") => Format::X3p,
         Some("plux") => Format::Plux,
-        _ => return FormatError::Archive { what: "a zip archive that is cut off or damaged".to_owned() },
+        _ => return FormatError::Other { what: "a zip archive that is cut off or damaged".to_owned() },
     };
     FormatError::Container { format, reason: "the archive is cut off or damaged".to_owned() }
 }

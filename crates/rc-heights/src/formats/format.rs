@@ -9,6 +9,10 @@ pub enum Format {
     Csv,
     /// Lines of `x y z`.
     Xyz,
+    /// ESRI ASCII grid.
+    EsriGrid,
+    /// Zygo XYZ data file or ASCII data file.
+    Zygo,
     /// Surfer grid: 6 text (DSAA), 6 binary (DSBB) and 7 (DSRB).
     Surfer,
     /// Gwyddion simple field 1.0.
@@ -51,10 +55,12 @@ pub enum Format {
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 24] = [
         Self::Npy,
         Self::Csv,
         Self::Xyz,
+        Self::EsriGrid,
+        Self::Zygo,
         Self::Surfer,
         Self::Gsf,
         Self::Gwy,
@@ -83,6 +89,8 @@ impl std::fmt::Display for Format {
             Self::Npy => "npy",
             Self::Csv => "csv",
             Self::Xyz => "xyz",
+            Self::EsriGrid => "ESRI ASCII grid",
+            Self::Zygo => "Zygo text",
             Self::Surfer => "Surfer grid",
             Self::Gsf => "Gwyddion simple field",
             Self::Gwy => "Gwyddion",

@@ -3,26 +3,17 @@
 //! They contain sizes, units and titles of columns.
 
 use super::fields::{refused, shown};
-use super::lines::{lines, number, words};
-use super::unit;
+use super::lines::{cell, comment, is_row_of_cells, lines, number, unquoted, words};
+use super::names::Name;
+use super::quantity::{Length, lengths, unit_of};
+use super::titles::Titles;
 use crate::{Format, FormatError, LengthUnit, Unit};
 
-/// Names of the size along x, in the languages of Gwyddion.
-const WIDTHS: [&str; 10] =
-    ["width", "breite", "largeur", "larghezza", "ancho", "largura", "šířka", "ширина", "x size", "xreal"];
-/// Names of the size along y.
-const HEIGHTS: [&str; 10] =
-    ["height", "höhe", "hauteur", "altezza", "alto", "altura", "výška", "высота", "y size", "yreal"];
-/// Names of the unit of the heights.
-const UNITS: [&str; 8] =
-    ["value units", "value unit", "z units", "z unit", "zunits", "data unit", "data units", "einheiten der werte"];
-/// Names of the channel.
-const CHANNELS: [&str; 6] = ["channel", "kanal", "canal", "canale", "kanál", "канал"];
-/// Maximum number of lines before the first number.
-const MOST_LINES: usize = 200;
+/// Maximum number of lines before the first number. Those of Nanoscope have several hundred.
+const MOST_LINES: usize = 4000;
 
-/// A length, with the unit that is given beside it.
-type Length = (f64, Option<LengthUnit>);
+/// Characters around a line that are no part of its fields.
+const AROUND: [char; 9] = ['"', '\'', '\\', '#', '%', '!', '*', '/', '\t'];
 
 /// Contents of the lines before the numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,18 +22,26 @@ pub(super) struct Heading {
     pub(super) first: usize,
     /// Name of the channel.
     pub(super) channel: String,
+    /// Titles of the columns.
+    pub(super) titles: Titles,
+    /// Numbers that mark missing points.
+    pub(super) missing: Vec<f64>,
+    /// Numbers of points along x and y.
+    pub(super) counts: [Option<usize>; 2],
     /// Sides along x and y.
     sides: [Option<Length>; 2],
-    /// Distance of points along x and y.
-    pixel: Option<Length>,
-    /// Numbers of points along x and y.
-    counts: [Option<usize>; 2],
+    /// One length for both sides, or for the longer of them.
+    scan: Option<Length>,
+    /// Distances of points along x and y.
+    spacing: [Option<Length>; 2],
     /// Unit of the heights, as written.
     unit: Option<String>,
+    /// Unit of all lengths that have no other.
+    of_all: Option<LengthUnit>,
     /// Metres per number in the text. It overrides the unit.
     metres: Option<f64>,
-    /// Titles of the columns.
-    pub(super) titles: Vec<String>,
+    /// Number of images that have names.
+    images: usize,
 }
 
 impl Heading {
@@ -52,84 +51,126 @@ impl Heading {
     /// [`FormatError::NoNumber`] when there are no numbers, or when the first apparent number is not valid.
     pub(super) fn of(text: &str) -> Result<Self, FormatError> {
         let mut heading = Self::default();
-        let mut others: Vec<(usize, &str)> = Vec::new();
+        let (mut last, mut first_words, mut count) = (None, None, 0);
         for (line, row) in lines(text) {
-            if let Some(comment) = row.strip_prefix(['#', '%']) {
+            if let Some(comment) = comment(row) {
                 heading.line(comment);
-            } else if words(row).0.next().is_some_and(|word| number(word, words(row).1).is_some()) {
+                if Titles::name_coordinates(comment) {
+                    last = Some((line, comment));
+                }
+                continue;
+            }
+            // A line of dashes below titles is no row of missing points.
+            let is_rule = count > 0 && row.chars().all(|c| "-+|=_ \t".contains(c));
+            if !is_rule && begins_numbers(row) {
                 heading.first = line;
-                return heading.with_titles(&others, row);
-            } else if others.len() < MOST_LINES {
-                heading.line(row);
-                others.push((line, row));
-            } else {
+                heading.titles = Titles::above(last, row)?;
+                return Ok(heading);
+            }
+            count += 1;
+            if count > MOST_LINES {
                 break;
             }
+            if !is_rule {
+                heading.line(row);
+                last = Some((line, row));
+                first_words = first_words.or(last);
+            }
         }
-        let Some((line, row)) = others.first() else { return Ok(heading) };
+        let Some((line, row)) = first_words else { return Ok(heading) };
         let word = words(row).0.next().unwrap_or_default();
-        Err(FormatError::NoNumber { line: *line, value: 1, text: shown(word) })
+        Err(FormatError::NoNumber { line, value: 1, text: shown(word) })
     }
 
-    /// Reads the last line before the first `row` of numbers as titles.
-    ///
-    /// It must have as many words as the row.
-    fn with_titles(mut self, others: &[(usize, &str)], row: &str) -> Result<Self, FormatError> {
-        let Some((line, last)) = others.last() else { return Ok(self) };
-        let (titles, comma) = words(last);
-        let titles: Vec<&str> = titles.collect();
-        if titles.len() != words(row).0.count() {
-            return Ok(self);
-        }
-        if titles.len() > 1 && titles[1..].iter().all(|word| number(word, comma).is_some()) {
-            // The first number is damaged, or these are numbers of columns, whose rows begin with numbers too.
-            return Err(FormatError::NoNumber { line: *line, value: 1, text: shown(titles[0]) });
-        }
-        self.titles = titles.into_iter().map(str::to_owned).collect();
-        Ok(self)
-    }
-
-    /// Reads a line of the form `name: value`, `name = value`, or `a=1 b=2`.
+    /// Reads a line with one field or several, as `name: value`, `name = value`, `name,value`, `name value`, or
+    /// `a=1 b=2`.
     fn line(&mut self, line: &str) {
-        if line.matches('=').count() > 1 {
-            for (name, value) in line.split_whitespace().filter_map(|pair| pair.split_once('=')) {
-                self.pair(name, value);
+        let line = line.trim_matches(|c: char| c.is_whitespace() || AROUND.contains(&c));
+        let parts = |separator: &'static str| {
+            let parts: Vec<&str> = line.split(separator).collect();
+            (parts.len() > 1 && parts.iter().all(|part| part.contains([':', '=']))).then_some(parts)
+        };
+        if let Some(parts) = [";", ", ", "\t", "|"].into_iter().find_map(parts) {
+            for part in parts {
+                self.field(part);
             }
-        } else if let Some((name, value)) = line.split_once(':').or_else(|| line.rsplit_once('=')) {
-            self.pair(name, value);
-        } else if let Some((name, value)) = line.split_once(['\t', ';', ',']) {
-            self.pair(name, value);
+        } else if line.matches('=').count() > 1 {
+            self.assignments(line);
+        } else {
+            self.field(line);
         }
     }
 
-    fn pair(&mut self, name: &str, value: &str) {
-        let (whole, lower, value) = (name.trim(), name.trim().to_lowercase(), value.trim());
-        // A unit may follow the name, as in `Width [µm]`.
-        let (name, unit) = match whole.split_once(['[', '(']) {
-            Some((before, unit)) if !lower.starts_with("height conversion") => {
-                (before.trim().to_lowercase(), unit.trim_end_matches([']', ')']).trim())
-            }
-            _ => (lower, ""),
-        };
-        let is = |names: &[&str]| names.contains(&name.as_str());
-        let length = || length(value, unit);
-        if is(&WIDTHS) {
-            self.sides[0] = length();
-        } else if is(&HEIGHTS) {
-            self.sides[1] = length();
-        } else if is(&["pixel size"]) {
-            self.pixel = length();
-        } else if is(&["w"]) {
-            self.counts[0] = value.parse().ok();
-        } else if is(&["h"]) {
-            self.counts[1] = value.parse().ok();
-        } else if is(&UNITS) {
-            self.unit = Some(value.to_owned());
-        } else if is(&CHANNELS) {
-            value.clone_into(&mut self.channel);
-        } else if name.starts_with("height conversion factor") && name.contains("> m") {
-            self.metres = number(value, true);
+    /// Reads `a=1 b=2`. The name is the word before `=`, and the value ends before the next name.
+    fn assignments(&mut self, line: &str) {
+        let Some((mut name, mut rest)) = line.split_once('=') else { return };
+        while let Some((value, after)) = rest.split_once('=') {
+            let (value, next) = value.trim().rsplit_once([' ', '\t', ',', ';']).unwrap_or((value, ""));
+            self.pair(name, value);
+            (name, rest) = (next, after);
         }
+        self.pair(name, rest);
+    }
+
+    /// Reads one field, whose name and value are separated by any of these characters, or by a blank.
+    fn field(&mut self, line: &str) {
+        // Nanoscope puts a number before some names.
+        let line = line.strip_prefix('@').and_then(|line| line.split_once(':')).map_or(line, |(_, field)| field);
+        for separator in [':', '=', '\t', ';', ','] {
+            if line.split_once(separator).is_some_and(|(name, value)| self.pair(name, value)) {
+                return;
+            }
+        }
+        let is_value = |value: &str| value.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+        for (at, _) in line.match_indices(' ').take(4) {
+            let (name, value) = line.split_at(at);
+            if is_value(value) && self.pair(name, value) {
+                return;
+            }
+        }
+    }
+
+    /// Reads a value, and says whether the name is known.
+    fn pair(&mut self, name: &str, value: &str) -> bool {
+        let (name, beside) = name_and_unit(name);
+        let Some(known) = Name::of(&name) else { return false };
+        let value = value.trim().trim_start_matches(['=', ':']).trim();
+        match known {
+            Name::Side(axis) => self.sides[axis] = one(value, &beside),
+            Name::Sides => match lengths(value, &beside).as_deref() {
+                Some([x, y]) => self.sides = [Some(*x), Some(*y)],
+                Some([both]) => self.scan = Some(*both),
+                _ => {}
+            },
+            Name::Spacing(axis) => self.spacing[axis] = one(value, &beside).filter(|length| is_spacing(&name, *length)),
+            Name::Spacings => match lengths(value, &beside).as_deref() {
+                Some([x, y]) if is_spacing(&name, *x) => self.spacing = [Some(*x), Some(*y)],
+                Some([both]) if is_spacing(&name, *both) => self.spacing = [Some(*both); 2],
+                _ => {}
+            },
+            Name::Count(axis) => self.counts[axis] = count(value).or(self.counts[axis]),
+            Name::HeightUnit => self.unit = Some(unquoted(value).to_owned()),
+            Name::HeightRange => {
+                let unit = value.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.,eE ".contains(c));
+                self.unit = Some(if unit.is_empty() { beside } else { unit.to_owned() });
+            }
+            Name::Unit => match unit_of(unquoted(value)) {
+                Some(unit) => self.of_all = Some(unit),
+                None => self.unit = self.unit.take().or_else(|| Some(unquoted(value).to_owned())),
+            },
+            Name::Channel => unquoted(value).clone_into(&mut self.channel),
+            Name::ImageData => self.image(value),
+            Name::Metres => self.metres = number(value, true),
+            Name::Missing => self.missing.extend(number(unquoted(value), true).filter(|mark| mark.is_finite())),
+        }
+        true
+    }
+
+    /// Reads the name of an image, which is the last word in quotes. Of several images, none is known to be the one.
+    fn image(&mut self, value: &str) {
+        self.images += 1;
+        let name = value.trim_matches(|c: char| c.is_whitespace() || c == '"').rsplit('"').next().unwrap_or_default();
+        self.channel = if self.images == 1 { name.to_owned() } else { String::new() };
     }
 
     /// Whether the lines contain the size of the map or its number of points.
@@ -141,7 +182,8 @@ impl Heading {
 
     /// Whether the lines contain the size of the map.
     pub(super) fn says_sides(&self) -> bool {
-        self.pixel.is_some() || self.sides.iter().all(Option::is_some)
+        let is_known = |axis: usize| self.sides[axis].is_some() || self.spacing[axis].is_some();
+        self.scan.is_some() || is_known(0) && is_known(1)
     }
 
     /// Sides of a map of `nx` times `ny` points, and their unit.
@@ -149,12 +191,7 @@ impl Heading {
     /// # Errors
     /// [`FormatError::Field`] when the lines have other numbers of points, or a size that is not positive.
     pub(super) fn sides(&self, nx: usize, ny: usize) -> Result<(Option<[f64; 2]>, Unit), FormatError> {
-        if let [Some(w), Some(h)] = self.counts
-            && (w, h) != (nx, ny)
-        {
-            let expected = "the numbers of columns and rows that are there; the file is truncated";
-            return Err(refused(Format::Csv, "w x h", &format!("{w} x {h}, for {nx} x {ny} numbers"), expected));
-        }
+        self.check_counts(nx, ny)?;
         let points = [nx as f64, ny as f64];
         // Numbers of points are not lengths.
         let counts = |[x, y]: [Length; 2]| {
@@ -165,19 +202,30 @@ impl Heading {
             [Some(x), Some(y)] if counts([x, y]) => [None; 2],
             sides => sides,
         };
-        let lengths = match (sides, self.pixel) {
-            ([Some(x), Some(y)], _) => [x, y],
-            (_, Some((pixel, unit))) => [(pixel * points[0], unit), (pixel * points[1], unit)],
-            _ => return Ok((None, Unit::Unnamed)),
-        };
+        let of_spacing = |axis: usize| self.spacing[axis].map(|(spacing, unit)| (spacing * points[axis], unit));
+        // One size is that along x, of pixels with equal sides.
+        let scan = |axis: usize| self.scan.map(|(side, unit)| (side * points[axis] / points[0], unit));
+        let side = |axis: usize| sides[axis].or_else(|| of_spacing(axis)).or_else(|| scan(axis));
+        let [Some(x), Some(y)] = [side(0), side(1)] else { return Ok((None, Unit::Unnamed)) };
+        let lengths = [x, y];
         if lengths.iter().any(|(side, _)| *side <= 0.0 || !side.is_finite()) {
             let found = format!("{:e} x {:e}", lengths[0].0, lengths[1].0);
             return Err(refused(Format::Csv, "width x height", &found, "two positive lengths"));
         }
         // If only one side has a unit, it applies to both.
-        let named = lengths.iter().find_map(|(_, unit)| *unit);
+        let named = lengths.iter().find_map(|(_, unit)| *unit).or(self.of_all);
         let metres = |(side, unit): Length| side * unit.or(named).map_or(1.0, LengthUnit::metres);
         Ok((Some(lengths.map(metres)), if named.is_some() { Unit::Metre } else { Unit::Unnamed }))
+    }
+
+    /// Refuses numbers of points that are not those in the lines.
+    fn check_counts(&self, nx: usize, ny: usize) -> Result<(), FormatError> {
+        let [w, h] = [self.counts[0].unwrap_or(nx), self.counts[1].unwrap_or(ny)];
+        if [w, h] == [nx, ny] {
+            return Ok(());
+        }
+        let expected = "the numbers of columns and rows that are there; the file is truncated";
+        Err(refused(Format::Csv, "w x h", &format!("{w} x {h}, for {nx} x {ny} numbers"), expected))
     }
 
     /// Unit of the numbers, and the factor that converts them to metres.
@@ -185,43 +233,69 @@ impl Heading {
     /// # Errors
     /// [`FormatError::Field`] when the factor is not valid.
     pub(super) fn of_heights(&self) -> Result<(Unit, f64), FormatError> {
-        match (self.metres, self.unit.as_deref()) {
+        match (self.metres, self.unit.as_deref().map(str::trim).filter(|name| !name.is_empty())) {
             (Some(metres), _) => {
                 Ok((Unit::Metre, super::fields::factor(Format::Csv, "height conversion factor", metres)?))
             }
-            (None, Some(name)) => Ok(unit::of_values(name)),
-            (None, None) => Ok((Unit::Unnamed, 1.0)),
+            (None, Some(name)) => Ok(unit_of(name).map_or((Unit::NotLength, 1.0), |unit| (Unit::Metre, unit.metres()))),
+            (None, None) => Ok(self.unit_of_all().map_or((Unit::Unnamed, 1.0), |unit| (Unit::Metre, unit.metres()))),
         }
     }
 
-    /// The units in titles of three columns, in their order. A single unit applies to all three.
-    pub(super) fn units_of_titles(&self) -> [Option<LengthUnit>; 3] {
-        let [a, b, c] = self.titles.as_slice() else { return [None; 3] };
-        let units = [a, b, c].map(|title| unit_of_title(title));
-        let named: Vec<LengthUnit> = units.into_iter().flatten().collect();
-        if let [only] = named.as_slice() { [Some(*only); 3] } else { units }
+    /// The unit of lengths that have no other: the one that is given for all, or the only one that is named.
+    pub(super) fn unit_of_all(&self) -> Option<LengthUnit> {
+        let lengths = self.sides.iter().chain(&self.spacing).chain([&self.scan]);
+        let mut named = lengths.filter_map(|length| length.and_then(|(_, unit)| unit));
+        let first = named.next();
+        let only = first.filter(|first| named.all(|unit| unit == *first));
+        self.of_all.or(only)
     }
 }
 
-/// The unit in a title such as `X_(microns)`, `z [nm]`, `y/µm` or `x in mm`.
-///
-/// It is the last word of a title of two or more words.
-fn unit_of_title(title: &str) -> Option<LengthUnit> {
-    let is_letter = |c: char| c.is_alphabetic() || c == '\u{b5}' || c == '\u{3bc}';
-    let words: Vec<&str> = title.split(|c: char| !is_letter(c)).filter(|word| !word.is_empty()).collect();
-    let (last, before) = words.split_last()?;
-    if before.is_empty() { None } else { unit::length(last) }
+/// Whether a line has the first numbers: it begins with a number, or all of its words are numbers or marks.
+fn begins_numbers(row: &str) -> bool {
+    let (mut words, comma) = words(row);
+    let Some(first) = words.next() else { return false };
+    let is_digit = |c: char| c.is_ascii_digit() || "+-.".contains(c);
+    let is_number = cell(first, comma).is_some_and(|value| !value.is_nan()) && unquoted(first).starts_with(is_digit);
+    is_number || words.next().is_some() && is_row_of_cells(row)
 }
 
-/// A number with the unit that follows it, or else the unit `beside` its name.
-///
-/// `None` for numbers of points and other quantities.
-fn length(text: &str, beside: &str) -> Option<Length> {
-    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.,eE".contains(c))).unwrap_or(text.len());
-    let (digits, unit) = text.split_at(end);
-    let name = if unit.trim().is_empty() { beside } else { unit.trim() };
-    let unit = if name.is_empty() { None } else { Some(unit::length(name)?) };
-    Some((number(digits.trim_end_matches(['e', 'E', ',']), true)?, unit))
+/// The name of a field without what is in brackets: an axis, which belongs to the name, or a unit.
+fn name_and_unit(name: &str) -> (String, String) {
+    let (mut whole, mut unit) = (String::new(), String::new());
+    if name.contains("->") {
+        return (name.to_owned(), unit);
+    }
+    for (i, part) in name.split(['[', '(']).enumerate() {
+        let (inside, outside) = if i == 0 { ("", part) } else { part.split_once([']', ')']).unwrap_or((part, "")) };
+        let is_axis = ["x", "y"].contains(&inside.trim().to_ascii_lowercase().as_str());
+        if is_axis {
+            whole.push_str(inside);
+        } else if !inside.trim().is_empty() {
+            inside.trim().clone_into(&mut unit);
+        }
+        whole.push_str(outside);
+    }
+    (whole, unit)
+}
+
+/// The only length of a field.
+fn one(value: &str, beside: &str) -> Option<Length> {
+    lengths(value, beside).and_then(|lengths| <[Length; 1]>::try_from(lengths).ok()).map(|[length]| length)
+}
+
+/// Whether a length is the distance of points. A whole number called resolution, without a unit, counts points.
+fn is_spacing(name: &str, (value, unit): Length) -> bool {
+    unit.is_some() || value.fract() != 0.0 || !name.to_lowercase().contains("resolution")
+}
+
+/// A number of points. Some programs write it once for each direction of the scan.
+fn count(value: &str) -> Option<usize> {
+    let mut words = value.split([' ', '\t', ',', ';']).map(unquoted).filter(|word| !word.is_empty());
+    let first = words.next()?;
+    let n = first.parse().ok().filter(|n| *n > 0)?;
+    words.all(|word| word == first).then_some(n)
 }
 
 #[cfg(test)]
@@ -277,15 +351,6 @@ mod tests {
         for other in ["Width (px): 2\nHeight (px): 3\n1 2\n", "Width [A]: 2\nHeight [A]: 3\n1 2\n"] {
             assert_eq!(of(other).sides(2, 1), Ok((None, Unit::Unnamed)), "{other}");
         }
-    }
-
-    #[test]
-    fn titles_name_units() {
-        let (um, nm) = (Some(LengthUnit::Micrometre), Some(LengthUnit::Nanometre));
-        assert_eq!(of("X_(microns),Y,Z\n0,0,1\n").units_of_titles(), [um; 3]);
-        assert_eq!(of("x [µm];y [µm];z [nm]\n0;0;1\n").units_of_titles(), [um, um, nm]);
-        assert_eq!(of("x/µm\ty/µm\tz/nm\n0\t0\t1\n").units_of_titles(), [um, um, nm]);
-        assert_eq!(of("x,y,z\n0,0,1\n").units_of_titles(), [None; 3]);
     }
 
     #[test]

@@ -5,8 +5,10 @@ mod archive;
 mod axes;
 mod binary;
 mod channel;
+mod cloud;
 mod decode;
 mod endian;
+mod esri;
 mod field;
 mod fields;
 mod format;
@@ -17,9 +19,11 @@ mod ibw;
 mod instrument;
 mod layout;
 mod lines;
+mod marks;
 mod mask;
 mod mat;
 mod metropro;
+mod names;
 mod nanoscope;
 pub mod nc_writer;
 mod netcdf;
@@ -30,16 +34,20 @@ mod other;
 mod plu;
 mod plux;
 mod png;
+mod quantity;
 mod sdf;
 mod sniff;
 mod sur;
 mod surfer;
+mod table;
 pub mod text;
 mod tiff;
+mod titles;
 mod unit;
 mod vk4;
 mod x3p;
 mod xyz;
+mod zygo;
 
 use std::fs::File;
 use std::io::Read as _;
@@ -189,7 +197,7 @@ pub fn read_with(path: &Path, params: &ReadParams) -> Result<HeightMap, ReadErro
     let file = Opened::new(path, params.max_bytes)?;
     if file.format == Format::Npy && file.rest.is_some() && params.channel.is_none() {
         // Arrays may be as large as memory, so they are not read as bytes first.
-        return checked(HeightMap::bare(npy::read(path)?), params).map_err(fail);
+        return checked(HeightMap::bare(npy::read(path)?), &params.missing).map_err(fail);
     }
     let format = layout::format(file.format, params.layout);
     file.whole().and_then(|bytes| parse_with(&bytes, format, params)).map_err(fail)
@@ -234,20 +242,27 @@ pub fn parse(bytes: &[u8], format: Format) -> Result<HeightMap, FormatError> {
 /// [`FormatError`] when the bytes are not valid, as for [`read_with`].
 pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<HeightMap, FormatError> {
     let channel = chosen(named(in_bytes(bytes, format, params)?), params.channel.as_deref())?;
-    checked((channel.read)()?, params).map(|map| order::bottom_first(map, bytes, format))
+    // Readers of texts compare the marks of the user with numbers as they are written, before any unit.
+    let is_text = matches!(format, Format::Csv | Format::EsriGrid | Format::Xyz | Format::Zygo)
+        || format == Format::Nanoscope && is_text(bytes);
+    let missing: &[f64] = if is_text { &[] } else { &params.missing };
+    checked((channel.read)()?, missing).map(|map| order::bottom_first(map, bytes, format))
 }
 
 /// The channels of a file of the given format.
 fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &ReadParams) -> Channels<'a> {
     Ok(match format {
         Format::Al3d => al3d::channels(bytes)?,
-        Format::Csv => text::channels(bytes, params.layout)?,
+        Format::Csv => text::channels(bytes, params.layout, &params.missing)?,
+        Format::EsriGrid => esri::channels(bytes, &params.missing)?,
         Format::Gsf => only(move || gsf::parse(bytes)),
         Format::Gwy => gwy::channels(bytes, params.mask)?,
         Format::Hdf5 | Format::NetCdf => netcdf::channels(bytes, format)?,
         Format::Ibw => ibw::channels(bytes)?,
         Format::Mat => mat::channels(bytes)?,
         Format::MetroPro => metropro::channels(bytes)?,
+        // Exports as text have the same header.
+        Format::Nanoscope if is_text(bytes) => text::channels(bytes, params.layout, &params.missing)?,
         Format::Nanoscope => nanoscope::channels(bytes)?,
         Format::Npy => only(move || npy::read_from(bytes, bytes.len() as u64).map(HeightMap::bare)),
         Format::Opd => opd::channels(bytes)?,
@@ -260,18 +275,16 @@ fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &ReadParams) -> Channel
         Format::Tiff => only(move || tiff::parse(bytes)),
         Format::Vk4 => vk4::channels(bytes)?,
         Format::X3p => only(move || x3p::parse(bytes)),
-        Format::Xyz => only(move || xyz::parse(bytes)),
+        Format::Xyz => xyz::channels(bytes, &params.missing),
+        Format::Zygo => zygo::channels(bytes, &params.missing),
     })
 }
 
-/// Makes the points missing that have a mark of the user.
+/// Makes the points missing that have a mark of the user, one of `missing`.
 ///
 /// Refuses infinite heights and maps without a measured point.
-fn checked(mut map: HeightMap, params: &ReadParams) -> Result<HeightMap, FormatError> {
-    if !params.missing.is_empty() {
-        let is_marked = |height: f64| params.missing.iter().any(|mark| (height - mark).abs() <= 1e-6 * mark.abs());
-        map.heights.values_mut().iter_mut().filter(|height| is_marked(**height)).for_each(|height| *height = f64::NAN);
-    }
+fn checked(mut map: HeightMap, missing: &[f64]) -> Result<HeightMap, FormatError> {
+    marks::Marks::new(missing, &[]).erase(map.heights.values_mut());
     let (values, nx) = (map.heights.values(), map.heights.grid().nx());
     if let Some(i) = values.iter().position(|height| height.is_infinite()) {
         return Err(FormatError::Infinite { row: i / nx, column: i % nx, value: values[i] });

@@ -43,6 +43,8 @@ impl Format {
             | Self::Surfer
             | Self::Npy
             | Self::Csv
+            | Self::EsriGrid
+            | Self::Zygo
             | Self::Xyz
             | Self::Hdf5
             | Self::Mat

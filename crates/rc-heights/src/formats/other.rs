@@ -49,7 +49,7 @@ const CONTAINERS: [Kind; 3] = [
 const TIFF: &[&[u8]] = &[b"II*\0", b"MM\0*"];
 
 /// Kinds with marks.
-const MARKED: [Kind; 49] = [
+const MARKED: [Kind; 50] = [
     kind(0, OLE, &["xls"], "an old Excel workbook (.xls)", TABLE),
     kind(0, OLE, &["mnt"], "a document of Mountains (.mnt)", "save the surface in it as .sur"),
     kind(0, OLE, &[], "a document of Office or of another program", EXPORT),
@@ -98,6 +98,7 @@ const MARKED: [Kind; 49] = [
     kind(0, &[b"[Param"], &[], "a Createc file (.dat)", GWYDDION),
     kind(0, &[b"fileType      Image"], &[], "a PicoScan file (.mi)", GWYDDION),
     kind(0, &[b"ZISRAWFILE"], &[], "a Zeiss file (.czi)", EXPORT),
+    kind(0, &[b"#VRML"], &[], "a VRML mesh", MESH),
     kind(0, &[b"#!JPK", b"#R3F"], &[], "a file of force curves, not a map", EXPORT),
 ];
 
@@ -130,9 +131,14 @@ const NAMED: [Kind; 15] = [
 
 const INSTRUMENT: &str = "a file of an instrument of a kind that is not read";
 
+/// The error for a file that is `what`, with what to do.
+fn other(what: &str, cure: &str) -> FormatError {
+    FormatError::Other { what: format!("{what}; {cure}") }
+}
+
 impl Kind {
     fn error(&self) -> FormatError {
-        FormatError::Other { what: self.what, cure: self.cure }
+        other(self.what, self.cure)
     }
 
     fn has_mark(&self, start: &[u8]) -> bool {
@@ -160,13 +166,16 @@ pub(super) fn marked(extension: Option<&str>, start: &[u8]) -> Option<FormatErro
     let first = &start[..start.len().min(200)];
     let contains = |part: &[u8]| first.windows(part.len()).any(|window| window == part);
     if start.starts_with(b"WSxM file copyright") && contains(b"SxM Image file") {
-        return Some(FormatError::Other { what: "a WSxM image", cure: GWYDDION });
+        return Some(other("a WSxM image", GWYDDION));
     }
     if contains(b"<VTKFile") {
-        return Some(FormatError::Other { what: "a VTK file", cure: ARRAY });
+        return Some(other("a VTK file", ARRAY));
+    }
+    if start.starts_with(b"<?xml") {
+        return Some(other("an XML text", "give points x y z, or a row of heights in each line"));
     }
     let is_stl = start.starts_with(b"solid") && is_text(start) && contains(b"facet");
-    is_stl.then_some(FormatError::Other { what: "an STL mesh", cure: MESH })
+    is_stl.then(|| other("an STL mesh", MESH))
 }
 
 /// The error for a file whose name is that of a kind that is not read.

@@ -2,11 +2,12 @@
 //!
 //! The name is used if the format has no mark.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use super::archive::{self, ZIP};
-use super::decode::is_text;
-use super::{Format, al3d, gsf, gwy, ibw, mat, metropro, nanoscope, opd, other, sur, vk4, xyz};
+use super::decode::{decoded, is_text};
+use super::{Format, al3d, esri, gsf, gwy, ibw, mat, metropro, nanoscope, opd, other, sur, vk4, xyz, zygo};
 use crate::FormatError;
 
 /// The signature of HDF5.
@@ -67,7 +68,7 @@ impl Format {
     ///
     /// # Errors
     /// - [`FormatError::Mark`] when the name belongs to a format with other first bytes.
-    /// - [`FormatError::Container`] or [`FormatError::Archive`] for a zip archive that is damaged or not a height map.
+    /// - [`FormatError::Container`] or [`FormatError::Other`] for a zip archive that is damaged or not a height map.
     /// - [`FormatError::Other`] for a file of a known kind that is not read.
     /// - [`FormatError::ZeroBytes`] when the name is that of a text, and the bytes are not a text.
     /// - [`FormatError::Unknown`] when the format cannot be determined.
@@ -91,6 +92,9 @@ impl Format {
         }
         if let Some(other) = other::marked(extension, start) {
             return Err(other);
+        }
+        if let Some(format) = of_text(start) {
+            return Ok(format);
         }
         Self::of_extension(extension, start)
     }
@@ -130,4 +134,16 @@ impl Format {
             _ => Err(extension.and_then(other::named).unwrap_or(FormatError::Unknown)),
         }
     }
+}
+
+/// The format of a text that its first words determine, whatever its name.
+fn of_text(start: &[u8]) -> Option<Format> {
+    // A file that was unpacked is here completely.
+    let start = &start[..start.len().min(4096)];
+    let text = if is_text(start) { decoded(start) } else { Cow::Borrowed("") };
+    let begins = |words: &str| text.trim_start().starts_with(words);
+    if begins(zygo::XYZ) || begins(zygo::ASCII) {
+        return Some(Format::Zygo);
+    }
+    esri::is_grid(&text).then_some(Format::EsriGrid)
 }

@@ -4,83 +4,81 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write as _};
 use std::path::Path;
 
-use rc_core::{Field, Grid};
+use rc_core::Field;
 
 use super::channel::{Channel, Channels};
 use super::decode::decoded;
-use super::field::field;
-use super::fields::shown;
+use super::field::{field, flip};
 use super::heading::Heading;
 use super::layout::Layout;
-use super::lines::{data_lines, number, words};
-use crate::{Format, FormatError, HeightMap};
+use super::marks::Marks;
+use super::table::Table;
+use crate::{FormatError, HeightMap, LengthUnit, ReadNote, Unit};
 
 /// Reads the numbers of a text with one row of the map in each line.
 ///
 /// A line feed, a carriage return, or both end a line. Commas, semicolons, tabs or blanks separate numbers. If the
 /// separator is a semicolon, a tab or a blank, a comma may be the decimal point, as in many countries. Lines before the
-/// first number, empty lines and lines that start with `#` or `%` are ignored. `NaN`, `BAD`, `***` and `---` are
-/// missing points.
+/// first number, empty lines and lines that start with `#` or `%` are ignored. Empty fields and words such as `NaN`,
+/// `Bad`, `No Data`, `#N/A`, `***` and `---` are missing points.
 ///
 /// # Errors
 /// [`FormatError`] with line and value.
 pub fn parse(bytes: &[u8]) -> Result<Field, FormatError> {
     let text = decoded(bytes);
-    rows(&text, Heading::of(&text)?.first)
+    let heading = Heading::of(&text)?;
+    let table = Table::of(&text, &heading)?.of_heights(&heading)?;
+    Ok(field(table.grid()?, table.values))
 }
 
 /// The channel of a text. Its name is in the lines before the numbers.
-pub(super) fn channels(bytes: &[u8], layout: Option<Layout>) -> Channels<'_> {
+///
+/// `missing` has the marks of missing points that the user gives.
+pub(super) fn channels<'a>(bytes: &'a [u8], layout: Option<Layout>, missing: &[f64]) -> Channels<'a> {
     let text = decoded(bytes);
     let heading = Heading::of(&text)?;
     let name = heading.channel.clone();
+    let marks = Marks::new(missing, &heading.missing);
     // The only channel counts as heights even if it has another quantity.
-    Ok(vec![Channel { name, is_height: true, read: Box::new(move || map(&text, &heading, layout)) }])
+    Ok(vec![Channel { name, is_height: true, read: Box::new(move || map(&text, &heading, layout, &marks)) }])
 }
 
-fn map(text: &str, heading: &Heading, layout: Option<Layout>) -> Result<HeightMap, FormatError> {
-    if let ([_, _], None) = (heading.titles.as_slice(), layout) {
-        let expected =
-            "like titles of columns; titles are read only above columns x, y and height, so remove the line, or give layout = matrix"
-                .to_owned();
-        return Err(FormatError::Columns { line: heading.first.saturating_sub(1), found: 2, expected });
+fn map(text: &str, heading: &Heading, layout: Option<Layout>, marks: &Marks) -> Result<HeightMap, FormatError> {
+    let mut table = Table::of(text, heading)?.of_heights(heading)?;
+    let [nx, ny] = table.size;
+    if let (Some(what), None, false) = (profile(nx, ny), layout, heading.is_of_rows()) {
+        return Err(FormatError::Profile { what });
     }
-    let mut heights = rows(text, heading.first)?;
-    if heights.grid().nx() <= 2 && layout.is_none() && !heading.is_of_rows() {
-        let columns = if heights.grid().nx() == 1 { "one column" } else { "two columns" };
-        let (what, cure) =
-            (format!("a text file with {columns}, which is a profile,"), "layout = matrix reads it as a map");
-        return Err(FormatError::Unsupported { format: Format::Csv, what, cure });
+    marks.erase(&mut table.values);
+    let grid = table.grid()?;
+    let (mut sides, mut side_unit) = heading.sides(nx, ny)?;
+    let (mut height_unit, mut factor) = heading.of_heights()?;
+    let mut notes = table.notes;
+    if let Some(steps) = table.steps {
+        let unit = heading.titles.unit_of_corner().or(heading.unit_of_all());
+        let metres = unit.map_or(1.0, LengthUnit::metres);
+        sides = Some([steps[0].abs() * nx as f64 * metres, steps[1].abs() * ny as f64 * metres]);
+        side_unit = if unit.is_some() { Unit::Metre } else { Unit::Unnamed };
+        if let (Unit::Unnamed, Some(unit)) = (height_unit, unit) {
+            (height_unit, factor) = (Unit::Metre, unit.metres());
+        }
+        flip(&mut table.values, grid, steps.map(|step| step < 0.0));
+        notes.extend((steps[1] < 0.0).then_some(ReadNote::RowsReversed));
     }
-    let (sides, side_unit) = heading.sides(heights.grid().nx(), heights.grid().ny())?;
-    let (height_unit, factor) = heading.of_heights()?;
-    crate::map::scale(heights.values_mut(), factor);
-    Ok(HeightMap::new(heights, height_unit, sides, side_unit))
+    crate::map::scale(&mut table.values, factor);
+    let mut map = HeightMap::new(field(grid, table.values), height_unit, sides, side_unit);
+    map.notes = notes;
+    Ok(map)
 }
 
-/// The numbers from line `first` on.
-fn rows(text: &str, first: usize) -> Result<Field, FormatError> {
-    let (mut values, mut columns, mut rows) = (Vec::new(), 0, 0);
-    for (line, row) in data_lines(text, first) {
-        let before = values.len();
-        let (words, comma) = words(row);
-        for (i, word) in words.enumerate() {
-            let no_number = || FormatError::NoNumber { line, value: i + 1, text: shown(word) };
-            values.push(number(word, comma).ok_or_else(no_number)?);
-        }
-        let found = values.len() - before;
-        if rows == 0 {
-            columns = found;
-        } else if found != columns {
-            let expected = format!("but the lines before have {columns}");
-            return Err(FormatError::Columns { line, found, expected });
-        }
-        rows += 1;
+/// What a table of so few columns or rows is, if it is a profile.
+fn profile(nx: usize, ny: usize) -> Option<&'static str> {
+    match (nx, ny) {
+        (1, _) => Some("a text of one column"),
+        (2, _) => Some("a text of two columns, as position and height,"),
+        (_, 1) => Some("a text of one row"),
+        _ => None,
     }
-    if rows == 0 {
-        return Err(FormatError::NoNumbers { expected: "give a row of the map in each line, or a point x y z" });
-    }
-    Ok(field(Grid::new(columns, rows)?, values))
 }
 
 /// Writes heights as CSV, one row of the map in each line, multiplied by `factor`.
@@ -103,7 +101,7 @@ pub fn write(path: &Path, field: &Field, factor: f64) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use rc_core::DVec2;
+    use rc_core::{DVec2, Grid};
 
     use super::*;
 
@@ -145,13 +143,15 @@ mod tests {
             ("1,2\r3,x\r", "line 2, value 2"),
             ("1,2\r\n\r\n3,x\r\n", "line 3, value 2"),
             ("1 2 3\n4 5\r6\n", "line 2 has 2 values"),
-            ("1,\n3,4\n", "line 1, value 2"),
+            ("1,\n3,4\n", "two columns"),
+            ("1,2,3,\n3,4,5\n", "line 2 has 3 values, but the lines before have 4"),
             ("1;2\n3,5;4,,5\n", "line 2, value 2"),
-            ("x,z\n1,2\n3,4\n", "line 1 has 2 values, like titles of columns"),
+            ("x,z\n1,2\n3,4\n", "is a profile"),
             ("1,2,3\n3,inf,5\n", "row 1, column 1"),
-            ("nan,nan,nan\n", "all 3 points"),
-            ("1,2\n3,4\n", "two columns, which is a profile"),
-            ("1\n2\n", "layout = matrix"),
+            ("nan,nan,nan\nbad,NA,\n", "all 6 points"),
+            ("1,2\n3,4\n", "is a profile"),
+            ("1\n2\n", "is a profile"),
+            ("1,2,3\n", "is a profile"),
             ("", "it has no numbers"),
             ("# a remark\n", "it has no numbers"),
         ];

@@ -228,5 +228,5 @@ fn the_layout_of_a_text_may_be_said() {
     assert_eq!(may_have_sides(&folder().join("gwyddion.txt"), &ReadParams::default()), Ok(true));
     std::fs::write(&path, "1 2 3\n2 3 4\n4.4 7 10\n").expect("a text");
     let error = read(&path).expect_err("no points").to_string();
-    assert!(error.contains("layout = matrix"), "{error}");
+    assert!(error.contains("grid lines"), "{error}");
 }

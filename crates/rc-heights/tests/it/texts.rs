@@ -28,10 +28,11 @@ fn a_profile_is_a_map_only_where_the_user_says_so() {
     let dir = tempfile::tempdir().expect("a temporary folder");
     let path = dir.path().join("profile.csv");
     let text = (0..100).fold("x,z\n".to_owned(), |text, i| text + &format!("{i},{}\n", i * i));
-    for (text, expected) in [(text.as_str(), "titles"), (&text[4..], "two columns, which is a profile")] {
+    for text in [text.as_str(), &text[4..]] {
         std::fs::write(&path, text).expect("a text");
         let error = read(&path).expect_err("a profile").to_string();
-        assert!(error.contains(expected) && !error.contains('\n'), "{error}");
+        // Heights of positions would be advice for a wrong number.
+        assert!(error.contains("profile") && !error.contains("matrix") && !error.contains('\n'), "{error}");
         let params = ReadParams { layout: Some(Layout::Matrix), ..ReadParams::default() };
         let map = read_with(&path, &params).expect("a map");
         assert_eq!((map.heights.grid().nx(), map.heights.grid().ny()), (2, 100));
