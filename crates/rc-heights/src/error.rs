@@ -4,7 +4,7 @@
 
 use std::path::PathBuf;
 
-use rc_core::quantity::count;
+use rc_core::quantity::{count, engineering};
 use rc_core::{Grid, GridError};
 use thiserror::Error;
 
@@ -44,8 +44,38 @@ pub enum FormatError {
     #[error("it contains NUL bytes, so it is not a text file; save it as UTF-8, or UTF-16 with a byte-order mark")]
     ZeroBytes,
     /// The file is compressed with gzip and cannot be decompressed.
-    #[error("cannot be unpacked by gzip: {0}; the file is damaged, truncated or too large")]
+    #[error("cannot be unpacked by gzip: {0}; the file is damaged or truncated")]
     Gzip(String),
+    /// Reading the file needs more memory than the user allows.
+    #[error(
+        "{}, more than the {} that --memory-limit allows; give more, or a smaller map",
+        about(*needed, *limit),
+        engineering(*limit as f64, "B")
+    )]
+    TooLarge {
+        /// Bytes that reading needs, or those that were needed when the limit was reached.
+        needed: u64,
+        /// Bytes that the user allows.
+        limit: u64,
+    },
+    /// An array has a list of points, and they cannot be a map.
+    #[error("an array of {rows} x {columns} numbers is taken as a list of points x y z, not as a map: {problem}")]
+    Points {
+        /// Number of rows.
+        rows: u64,
+        /// Number of columns.
+        columns: u64,
+        /// Why the points are no map.
+        problem: Box<FormatError>,
+    },
+    /// An array has the values along a line.
+    #[error("an array of {shape} numbers is a profile, not a map; a map is a 2-D array of heights{cure}")]
+    Profile {
+        /// Numbers of values along each dimension.
+        shape: String,
+        /// How to read it as a map all the same, or nothing.
+        cure: &'static str,
+    },
     /// The first bytes do not fit the format of the extension.
     #[error("not a valid {format} file: {expected}")]
     Mark {
@@ -197,6 +227,15 @@ pub enum FormatError {
     /// The number of points is not valid for a grid.
     #[error(transparent)]
     Grid(#[from] GridError),
+}
+
+/// Says how much memory is needed. A file that is not read to its end needs an unknown amount.
+fn about(needed: u64, limit: u64) -> String {
+    if needed as f64 > 1.1 * limit as f64 {
+        format!("it needs about {} of memory", engineering(needed as f64, "B"))
+    } else {
+        "it needs too much memory".to_owned()
+    }
 }
 
 /// Says why no channel is read, and how to read one.

@@ -14,6 +14,7 @@ use super::channel::{Channel, Channels, each};
 use super::field::flip;
 use super::fields::{factor, refused, shown_as_line};
 use super::instrument::{Places, map, metres, scale_measured, sides};
+use super::limit;
 use crate::{Format, FormatError, HeightMap};
 
 /// The first bytes of an object with integers that are not compressed.
@@ -52,7 +53,7 @@ struct Object<'a> {
     data: &'a [u8],
 }
 
-pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
+pub(super) fn channels(bytes: &[u8], max_bytes: u64) -> Channels<'_> {
     let mut channels = Vec::new();
     let mut rest = bytes;
     loop {
@@ -67,7 +68,7 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
         let stored = object.stored();
         let data = object.data;
         let (name, is_height) = (object.name.clone(), object.is_height);
-        let read = Box::new(move || object.read());
+        let read = Box::new(move || object.read(max_bytes));
         channels.push((name.clone(), Ok(Channel { name, is_height, read })));
         rest = stored.and_then(|stored| data.get(stored..)).unwrap_or_default();
         // A later object that is cut off before its integers does not prevent reading the others.
@@ -124,7 +125,7 @@ fn object(bytes: &[u8]) -> Result<Object<'_>, FormatError> {
 }
 
 impl Object<'_> {
-    fn read(&self) -> Result<HeightMap, FormatError> {
+    fn read(&self, max_bytes: u64) -> Result<HeightMap, FormatError> {
         if self.is_profile {
             let (what, cure) = ("a profile".to_owned(), "a map of heights is needed: save the surface");
             return Err(FormatError::Unsupported { format: Format::Sur, what, cure });
@@ -133,6 +134,7 @@ impl Object<'_> {
             let (what, cure) = (format!("an object of {} values a point", self.values), "save a map of one of them");
             return Err(FormatError::Unsupported { format: Format::Sur, what, cure });
         }
+        self.check_size(max_bytes)?;
         let inflated = if self.compressed { Some(self.inflated()?) } else { None };
         let mut values = self.number.values(inflated.as_deref().unwrap_or(self.data), self.grid)?;
         // Heights of a replica are negative. The file says so, and along which axis the replica is mirrored.
@@ -146,6 +148,16 @@ impl Object<'_> {
         }
         flip(&mut values, self.grid, [self.inversion == 2, self.inversion == 3]);
         Ok(map(self.grid, values, self.is_height, self.sides))
+    }
+
+    /// Refuses integers that are there and need too much memory.
+    fn check_size(&self, max_bytes: u64) -> Result<(), FormatError> {
+        let (unpacked, inflation) = if self.compressed { (self.number.size() as u64, MOST_INFLATION) } else { (0, 1) };
+        let (stored, needed) = (self.data.len() as u64, self.number.bytes_of(self.grid));
+        if needed > stored.saturating_mul(inflation) {
+            return Err(FormatError::CutShort { grid: self.grid, needed, found: stored });
+        }
+        limit::check_map(self.grid, unpacked, stored, max_bytes)
     }
 
     /// The number of streams, and for each its length after and before decompression.
@@ -173,10 +185,6 @@ impl Object<'_> {
     /// The integers of all streams.
     fn inflated(&self) -> Result<Vec<u8>, FormatError> {
         let needed = self.number.bytes_of(self.grid);
-        let found = (self.data.len() as u64).saturating_mul(MOST_INFLATION);
-        if found < needed {
-            return Err(FormatError::CutShort { grid: self.grid, needed, found });
-        }
         let (lengths, mut at) = self.streams()?;
         let mut integers = Vec::new();
         for [_, stored] in lengths {
