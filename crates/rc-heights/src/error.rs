@@ -4,7 +4,7 @@
 
 use std::path::PathBuf;
 
-use rc_core::quantity::count;
+use rc_core::quantity::{count, engineering};
 use rc_core::{Grid, GridError};
 use thiserror::Error;
 
@@ -40,18 +40,42 @@ pub enum FormatError {
         /// Kind of the file, and what to do.
         what: String,
     },
-    /// The file is a profile.
-    #[error("{what} is a profile, and a map is needed: a row of heights in each line, or a point x y z")]
+    /// The file has the heights along a line.
+    #[error("{what} is a profile, not a map; {cure}")]
     Profile {
         /// What the file has.
-        what: &'static str,
+        what: String,
+        /// What a map has.
+        cure: String,
     },
     /// The name is that of a text file, but the bytes are not.
     #[error("it contains NUL bytes, so it is not a text file; save it as UTF-8, or UTF-16 with a byte-order mark")]
     ZeroBytes,
     /// The file is compressed with gzip and cannot be decompressed.
-    #[error("cannot be unpacked by gzip: {0}; the file is damaged, truncated or too large")]
+    #[error("cannot be unpacked by gzip: {0}; the file is damaged or truncated")]
     Gzip(String),
+    /// Reading the file needs more memory than the user allows.
+    #[error(
+        "{}, more than the {} that --memory-limit allows; give more, or a smaller map",
+        about(*needed, *limit),
+        engineering(*limit as f64, "B")
+    )]
+    TooLarge {
+        /// Bytes that reading needs, or those that were needed when the limit was reached.
+        needed: u64,
+        /// Bytes that the user allows.
+        limit: u64,
+    },
+    /// An array has a list of points, and they cannot be a map.
+    #[error("an array of {rows} x {columns} numbers is taken as a list of points x y z, not as a map: {problem}")]
+    Points {
+        /// Number of rows.
+        rows: u64,
+        /// Number of columns.
+        columns: u64,
+        /// Why the points are no map.
+        problem: Box<FormatError>,
+    },
     /// The first bytes do not fit the format of the extension.
     #[error("not a valid {format} file: {expected}")]
     Mark {
@@ -203,6 +227,29 @@ pub enum FormatError {
     /// The number of points is not valid for a grid.
     #[error(transparent)]
     Grid(#[from] GridError),
+}
+
+/// Says how much memory is needed. A file that is not read to its end needs an unknown amount.
+fn about(needed: u64, limit: u64) -> String {
+    if needed as f64 > 1.1 * limit as f64 {
+        format!("it needs about {} of memory", engineering(needed as f64, "B"))
+    } else {
+        "it needs too much memory".to_owned()
+    }
+}
+
+impl FormatError {
+    /// The error for a text with a profile, which has `what`.
+    pub(crate) fn profile_in_text(what: &str) -> Self {
+        let cure = "a map has a row of heights in each line, or a point x y z".to_owned();
+        Self::Profile { what: what.to_owned(), cure }
+    }
+
+    /// The error for an array with a profile. `or` says how to read it as a map all the same, or nothing.
+    pub(crate) fn profile_in_array(shape: &str, or: &str) -> Self {
+        let cure = format!("a map is a 2-D array of heights{or}");
+        Self::Profile { what: format!("an array of {shape} numbers"), cure }
+    }
 }
 
 /// Says why no channel is read, and how to read one.

@@ -11,7 +11,9 @@ use std::fs::File;
 use std::io::{self, BufWriter, Read as _, Write as _};
 use std::path::Path;
 
-use crate::formats::{data_lines, decoded, hdf5_table, is_text, number, shown, words};
+use crate::formats::{
+    DEFAULT_MAX_BYTES, check_size, check_text, data_lines, decoded, hdf5_table, is_text, number, shown, words,
+};
 use crate::{FormatError, ReadError};
 
 /// The first bytes of an HDF5 file.
@@ -42,15 +44,25 @@ pub struct Coefficient {
 /// # Errors
 /// [`ReadError`] when the file cannot be read, or when a value is wrong. The error contains its line and value.
 pub fn read(path: &Path) -> Result<Vec<Coefficient>, ReadError> {
+    read_within(path, DEFAULT_MAX_BYTES)
+}
+
+/// Reads the coefficients at `path` with at most `max_bytes` of memory, as [`read`].
+///
+/// # Errors
+/// Those of [`read`], and [`FormatError::TooLarge`].
+pub fn read_within(path: &Path, max_bytes: u64) -> Result<Vec<Coefficient>, ReadError> {
     let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
     let unreadable = |cause: io::Error| fail(FormatError::Unreadable(cause.to_string()));
     let mut file = File::open(path).map_err(unreadable)?;
-    if file.metadata().map_err(unreadable)?.is_dir() {
+    let metadata = file.metadata().map_err(unreadable)?;
+    if metadata.is_dir() {
         return Err(fail(FormatError::Unreadable("it is a folder, not a file of Fourier coefficients".into())));
     }
+    check_size(metadata.len(), max_bytes).map_err(fail)?;
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes).map_err(unreadable)?;
-    parse(&bytes).map_err(fail)
+    parse_within(&bytes, max_bytes).map_err(fail)
 }
 
 /// Reads coefficients from the bytes of a file.
@@ -58,12 +70,16 @@ pub fn read(path: &Path) -> Result<Vec<Coefficient>, ReadError> {
 /// # Errors
 /// [`FormatError`] when the bytes are not valid.
 pub fn parse(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
-    if bytes.starts_with(HDF5_MARK) { parse_hdf5(bytes) } else { parse_text(bytes) }
+    parse_within(bytes, DEFAULT_MAX_BYTES)
+}
+
+fn parse_within(bytes: &[u8], max_bytes: u64) -> Result<Vec<Coefficient>, FormatError> {
+    if bytes.starts_with(HDF5_MARK) { parse_hdf5(bytes, max_bytes) } else { parse_text(bytes, max_bytes) }
 }
 
 /// Reads arrays kx, ky, Re and Im, or one array of these columns.
-fn parse_hdf5(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
-    let rows = hdf5_table(bytes, ["kx", "ky", "Re", "Im"])?;
+fn parse_hdf5(bytes: &[u8], max_bytes: u64) -> Result<Vec<Coefficient>, FormatError> {
+    let rows = hdf5_table(bytes, ["kx", "ky", "Re", "Im"], max_bytes)?;
     let of_row = |(i, [kx, ky, re, im]): (usize, [f64; 4])| {
         Ok(Coefficient { kx: wave_number(i + 1, kx)?, ky: wave_number(i + 1, ky)?, re, im })
     };
@@ -73,10 +89,11 @@ fn parse_hdf5(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
 /// Reads lines of kx, ky, Re, Im with commas, semicolons or blanks between them.
 ///
 /// Empty lines and lines that start with `#` are ignored.
-fn parse_text(bytes: &[u8]) -> Result<Vec<Coefficient>, FormatError> {
+fn parse_text(bytes: &[u8], max_bytes: u64) -> Result<Vec<Coefficient>, FormatError> {
     if !is_text(bytes) {
         return Err(FormatError::ZeroBytes);
     }
+    check_text(bytes, max_bytes)?;
     let waves: Vec<Coefficient> =
         data_lines(&decoded(bytes), 1).map(|(line, row)| coefficient(line, row)).collect::<Result<_, _>>()?;
     if waves.is_empty() {

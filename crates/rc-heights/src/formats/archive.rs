@@ -1,9 +1,8 @@
 //! Archives: recognition of zip archives by their members, and decompression of gzip.
 
-use std::io::{Cursor, Read as _};
+use std::io::Cursor;
 use std::path::Path;
 
-use flate2::bufread::MultiGzDecoder;
 use zip::ZipArchive;
 
 use super::Format;
@@ -81,15 +80,4 @@ pub(super) fn folder_of(names: &[String], member: &str) -> String {
     let folders = names.iter().filter_map(|name| name.strip_suffix(member));
     let folders = folders.filter(|folder| folder.is_empty() || folder.ends_with('/'));
     folders.min_by_key(|folder| folder.len()).unwrap_or_default().to_owned()
-}
-
-/// Decompresses a gzip file to at most `max_bytes`.
-pub(super) fn unzipped(bytes: &[u8], max_bytes: u64) -> Result<Vec<u8>, FormatError> {
-    let mut unpacked = Vec::new();
-    let read = MultiGzDecoder::new(bytes).take(max_bytes.saturating_add(1)).read_to_end(&mut unpacked);
-    read.map_err(|cause| FormatError::Gzip(cause.to_string()))?;
-    if unpacked.len() as u64 > max_bytes {
-        return Err(FormatError::Gzip(format!("unpacked, it has more than {max_bytes} bytes")));
-    }
-    Ok(unpacked)
 }

@@ -88,7 +88,12 @@ impl Number {
         let needed = self.bytes_of(grid);
         let cut_short = FormatError::CutShort { grid, needed, found: bytes.len() as u64 };
         let stored = usize::try_from(needed).ok().and_then(|needed| bytes.get(..needed)).ok_or(cut_short)?;
-        Ok(match self {
+        Ok(self.all(stored))
+    }
+
+    /// All values in `stored`.
+    pub(crate) fn all(self, stored: &[u8]) -> Vec<f64> {
+        match self {
             Self::U8 => stored.iter().map(|value| f64::from(*value)).collect(),
             Self::I8 => each(stored, |b| f64::from(i8::from_le_bytes(b))),
             Self::U16 => each(stored, |b| f64::from(u16::from_le_bytes(b))),
@@ -97,7 +102,7 @@ impl Number {
             Self::I32 => each(stored, |b| f64::from(i32::from_le_bytes(b))),
             Self::F32 => each(stored, |b| f64::from(f32::from_le_bytes(b))),
             Self::F64 => each(stored, f64::from_le_bytes),
-        })
+        }
     }
 
     /// The values of `grid`, which must be all of `bytes`.

@@ -91,7 +91,7 @@ impl Axis {
         }
         if last - first == 0.0 {
             let what = if axis == 0 { "a list of points with one x" } else { "a list of points with one y" };
-            return Err(FormatError::Profile { what });
+            return Err(FormatError::profile_in_text(what));
         }
         let mut best: Option<Self> = None;
         for gap in gaps_between_lines(&all) {

@@ -59,8 +59,16 @@ impl Endian {
         if self == Self::Little || size == 1 || (bytes.len() as u64) < needed {
             return number.values(bytes, grid);
         }
-        let mut swapped = bytes[..grid.len() * size].to_vec();
-        swapped.chunks_exact_mut(size).for_each(<[u8]>::reverse);
-        number.values(&swapped, grid)
+        Ok(self.all(number, &bytes[..grid.len() * size]))
+    }
+
+    /// All values in `bytes`.
+    pub(super) fn all(self, number: Number, bytes: &[u8]) -> Vec<f64> {
+        if self == Self::Little || number.size() == 1 {
+            return number.all(bytes);
+        }
+        let mut swapped = bytes.to_vec();
+        swapped.chunks_exact_mut(number.size()).for_each(<[u8]>::reverse);
+        number.all(&swapped)
     }
 }

@@ -1,25 +1,24 @@
 //! MATLAB 5 files (The MathWorks, "MAT-File Format").
 //!
 //! The format has named arrays, stored column by column, each plain or compressed with zlib. Real 2-D arrays are
-//! channels. Their first index is y, the second x. Vectors or meshes called `x` and `y` are coordinates.
+//! channels, and so are the frames of arrays with more dimensions. Their first index is y, the second x. Vectors or
+//! meshes called `x` and `y`, or the like, are coordinates. Single numbers and texts may say the size and the units.
 //!
 //! Files of version 7.3 are HDF5. Readers on crates.io take memory for any size that a compressed array claims. This
 //! reader does not.
 
 use std::borrow::Cow;
 use std::io::Read as _;
-use std::rc::Rc;
 
 use flate2::read::ZlibDecoder;
 use rc_core::Grid;
 
-use super::axes;
 use super::binary::Number;
-use super::channel::{Channel, Channels};
 use super::endian::Endian;
-use super::field::{field, flip, transposed};
+use super::field::transposed;
 use super::fields::{refused, shown_as_line};
-use crate::{Format, FormatError, HeightMap, Unit};
+use super::limit::{self, DEFAULT_MAX_BYTES};
+use crate::{Format, FormatError};
 
 /// The first bytes.
 pub(super) const MARK: &[u8] = b"MATLAB 5.0 MAT-file";
@@ -35,12 +34,24 @@ const START: u64 = 512;
 const MOST_INFLATION: u64 = 1032;
 
 /// An array in the file, which is decompressed when it is read.
-struct Array<'a> {
-    name: String,
-    rows: usize,
-    columns: usize,
+pub(super) struct Array<'a> {
+    pub(super) name: String,
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+    /// Number of arrays of rows x columns.
+    pub(super) frames: usize,
+    pub(super) class: Class,
     order: Endian,
     stored: Stored<'a>,
+}
+
+/// What the values of an array are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Class {
+    Number,
+    /// True or false, such as a mask.
+    Logical,
+    Text,
 }
 
 #[derive(Clone, Copy)]
@@ -75,23 +86,17 @@ impl MatArray {
 /// [`FormatError`] when the file is not valid.
 pub fn mat_arrays(bytes: &[u8]) -> Result<Vec<MatArray>, FormatError> {
     let found = arrays(bytes)?;
-    let whole = found.iter().filter(|array| array.rows > 0 && array.columns > 0);
-    whole.map(|array| Ok(MatArray { name: array.name.clone(), rows: array.rows, values: array.stored()?.1 })).collect()
-}
-
-pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
-    let arrays = Rc::new(arrays(bytes)?);
-    let is_map = |array: &Array<'_>| array.rows > 1 && array.columns > 1 && array.coordinate().is_none();
-    let maps = (0..arrays.len()).filter(|i| is_map(&arrays[*i]));
-    let channel = |i: usize| {
-        let arrays = arrays.clone();
-        Channel { name: arrays[i].name.clone(), is_height: true, read: Box::new(move || map(&arrays, i)) }
+    let is_whole =
+        |array: &&Array<'_>| array.rows > 0 && array.columns > 0 && array.frames == 1 && array.class != Class::Text;
+    let read = |array: &Array<'_>| {
+        let (_, values) = array.stored(0, DEFAULT_MAX_BYTES)?;
+        Ok(MatArray { name: array.name.clone(), rows: array.rows, values })
     };
-    Ok(maps.map(channel).collect())
+    found.iter().filter(is_whole).map(read).collect()
 }
 
 /// The elements of a file that are real arrays of numbers with two dimensions.
-fn arrays(file: &[u8]) -> Result<Vec<Array<'_>>, FormatError> {
+pub(super) fn arrays(file: &[u8]) -> Result<Vec<Array<'_>>, FormatError> {
     let order = match file.get(126..HEADER) {
         Some(b"IM") => Endian::Little,
         Some(b"MI") => Endian::Big,
@@ -161,77 +166,93 @@ impl<'a> Array<'a> {
         let mut elements = Elements { bytes: &start, order };
         let Some([(_, flags), (_, sizes), (_, name)]) = elements.three() else { return Ok(None) };
         let flags = order.u32_at(flags, 0);
-        // Classes 6 to 15 are numbers. Bit 11 marks complex numbers.
-        let is_real = (6..=15).contains(&(flags & 0xff)) && flags & 0x800 == 0;
-        if !is_real || sizes.len() != 8 {
-            return Ok(None);
-        }
-        let size = |at| usize::try_from(order.i32_at(sizes, at)).unwrap_or(0);
-        let (rows, columns, name) = (size(0), size(4), String::from_utf8_lossy(name).into_owned());
-        Ok(Some(Self { name, rows, columns, order, stored }))
+        // Bit 11 marks complex numbers, and bit 9 truth values.
+        let class = match flags & 0xff {
+            _ if flags & 0x800 != 0 => return Ok(None),
+            4 => Class::Text,
+            6..=15 if flags & 0x200 != 0 => Class::Logical,
+            6..=15 => Class::Number,
+            _ => return Ok(None),
+        };
+        let size = |at: usize| usize::try_from(order.i32_at(sizes, 4 * at)).unwrap_or(0);
+        let all: Vec<usize> = (0..sizes.len() / 4).map(size).collect();
+        // Dimensions of length 1 are no dimensions, except in two.
+        let long: Vec<usize> = all.iter().copied().filter(|n| *n != 1).collect();
+        let (rows, columns, frames) = match (all.as_slice(), long.as_slice()) {
+            ([rows, columns], _) | ([_, _, ..], [rows, columns]) => (*rows, *columns, 1),
+            ([rows, columns, ..], []) => (*rows, *columns, 1),
+            (_, [rows, columns, rest @ ..]) => {
+                (*rows, *columns, rest.iter().fold(1, |n: usize, m| n.saturating_mul(*m)))
+            }
+            _ => return Ok(None),
+        };
+        let name = String::from_utf8_lossy(name).into_owned();
+        Ok(Some(Self { name, rows, columns, frames, class, order, stored }))
     }
 
-    /// The values, row by row.
-    fn values(&self) -> Result<(Grid, Vec<f64>), FormatError> {
-        let (grid, stored) = self.stored()?;
+    /// The values of a frame, row by row.
+    pub(super) fn values(&self, frame: usize, max_bytes: u64) -> Result<(Grid, Vec<f64>), FormatError> {
+        let (grid, stored) = self.stored(frame, max_bytes)?;
         Ok((grid, transposed(&stored, grid)))
     }
 
-    /// The values as they are stored, column by column, and the grid of rows.
-    fn stored(&self) -> Result<(Grid, Vec<f64>), FormatError> {
+    /// The values of a frame as they are stored, column by column, and the grid of rows.
+    fn stored(&self, frame: usize, max_bytes: u64) -> Result<(Grid, Vec<f64>), FormatError> {
         let grid = Grid::new(self.columns, self.rows)?;
-        // Values may be stored in smaller types than the class says, with at least one byte each.
-        let (needed, found) = (grid.len() as u64, self.stored.most());
-        if found < needed {
-            return Err(FormatError::CutShort { grid, needed, found });
+        let stored = self.numbers(frame, grid.len(), max_bytes)?;
+        if stored.len() < grid.len() {
+            return Err(FormatError::CutShort { grid, needed: grid.len() as u64, found: stored.len() as u64 });
         }
-        let bytes = self.stored.bytes(START + 8 * needed)?;
-        let mut elements = Elements { bytes: &bytes, order: self.order };
-        let parts = elements.three().and_then(|_| elements.next());
-        let Some((kind, data)) = parts else {
-            return Err(FormatError::CutShort { grid, needed, found: bytes.len() as u64 });
-        };
-        let stored = match number(kind) {
-            Some(number) => self.order.values(number, data, grid)?,
-            None if kind == 12 || kind == 13 => long_integers(data, kind == 12, self.order, grid)?,
-            None => return Err(refused(Format::Mat, "type of values", &kind, "that of real numbers")),
-        };
         Ok((grid, stored))
     }
 
-    /// The axis whose coordinates are in the array, by its name.
-    fn coordinate(&self) -> Option<usize> {
-        ["x", "y"].iter().position(|name| self.name.eq_ignore_ascii_case(name))
+    /// `n` values of a frame as they are stored, or fewer if they are not there.
+    pub(super) fn numbers(&self, frame: usize, n: usize, max_bytes: u64) -> Result<Vec<f64>, FormatError> {
+        // Values may be stored in smaller types than the class says, with at least one byte each.
+        let needed = (n as u64).saturating_mul(frame as u64 + 1);
+        if self.stored.most() < needed {
+            return Ok(Vec::new());
+        }
+        // The values, those of the file, and their transpose.
+        limit::check(needed.saturating_mul(8).saturating_add(16 * n as u64), max_bytes)?;
+        let bytes = self.stored.bytes(START + 8 * needed)?;
+        let mut elements = Elements { bytes: &bytes, order: self.order };
+        let Some((kind, data)) = elements.three().and_then(|_| elements.next()) else { return Ok(Vec::new()) };
+        let size = match number(kind) {
+            Some(number) => number.size(),
+            None if kind == 12 || kind == 13 => 8,
+            None => return Err(refused(Format::Mat, "type of values", &kind, "that of real numbers")),
+        };
+        let data = data.get(frame * n * size..).and_then(|data| data.get(..n * size)).unwrap_or_default();
+        Ok(match number(kind) {
+            Some(number) => self.order.all(number, data),
+            None => data.chunks_exact(size).map(|bytes| long_integer(bytes, kind == 12, self.order)).collect(),
+        })
     }
-}
 
-/// Array `i` as a map, with sides if there are coordinates.
-fn map(arrays: &[Array<'_>], i: usize) -> Result<HeightMap, FormatError> {
-    let (grid, mut values) = arrays[i].values()?;
-    let mut sides = None;
-    if let Some([x, y]) = coordinates(arrays, i)? {
-        let steps = [axes::step("x", &x)?, axes::step("y", &y)?];
-        flip(&mut values, grid, steps.map(|step| step < 0.0));
-        sides = Some([steps[0].abs() * grid.nx() as f64, steps[1].abs() * grid.ny() as f64]);
+    /// The text of an array of characters, of at most `START` bytes.
+    pub(super) fn text(&self) -> Option<String> {
+        let bytes = self.stored.bytes(START).ok().filter(|_| self.class == Class::Text)?;
+        let mut elements = Elements { bytes: &bytes, order: self.order };
+        let (kind, data) = elements.three().and_then(|_| elements.next())?;
+        // Characters have 16 bits in older files, of which texts in Latin-1 use the lower eight.
+        let units = data.chunks_exact(2).map(|unit| self.order.i16_at(unit, 0).cast_unsigned());
+        Some(match kind {
+            4 | 17 => char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect(),
+            _ => String::from_utf8_lossy(data).into_owned(),
+        })
     }
-    Ok(HeightMap::new(field(grid, values), Unit::Unnamed, sides, Unit::Unnamed))
-}
 
-/// Coordinates of array `i` along x and y.
-///
-/// `None` unless there are arrays with these names and of the right lengths.
-fn coordinates(arrays: &[Array<'_>], i: usize) -> Result<Option<[Vec<f64>; 2]>, FormatError> {
-    let of = |axis| arrays.iter().enumerate().find(|(j, array)| *j != i && array.coordinate() == Some(axis));
-    let (map, Some((_, x)), Some((_, y))) = (&arrays[i], of(0), of(1)) else { return Ok(None) };
-    let is_vector = |array: &Array<'_>, n| array.rows.min(array.columns) == 1 && array.rows.max(array.columns) == n;
-    let is_mesh = |array: &Array<'_>| (array.rows, array.columns) == (map.rows, map.columns);
-    if is_vector(x, map.columns) && is_vector(y, map.rows) {
-        return Ok(Some([x.values()?.1, y.values()?.1]));
+    /// Whether the array has a map.
+    pub(super) fn is_map(&self) -> bool {
+        self.class != Class::Text && self.rows > 1 && self.columns > 1
     }
-    if is_mesh(x) && is_mesh(y) {
-        return Ok(axes::of_meshes(&x.values()?.1, &y.values()?.1, map.columns));
+
+    /// The number of values of a vector.
+    pub(super) fn length(&self) -> Option<usize> {
+        let is_vector = self.class == Class::Number && self.frames == 1 && self.rows.min(self.columns) == 1;
+        is_vector.then(|| self.rows.max(self.columns))
     }
-    Ok(None)
 }
 
 /// The elements of an array.
@@ -275,13 +296,9 @@ fn number(kind: u32) -> Option<Number> {
     })
 }
 
-fn long_integers(data: &[u8], signed: bool, order: Endian, grid: Grid) -> Result<Vec<f64>, FormatError> {
-    let (needed, found) = (8 * grid.len() as u64, data.len() as u64);
-    if found < needed {
-        return Err(FormatError::CutShort { grid, needed, found });
-    }
-    let value = |at| if signed { order.i64_at(data, at) as f64 } else { order.i64_at(data, at).cast_unsigned() as f64 };
-    Ok((0..grid.len()).map(|i| value(8 * i)).collect())
+fn long_integer(bytes: &[u8], signed: bool, order: Endian) -> f64 {
+    let value = order.i64_at(bytes, 0);
+    if signed { value as f64 } else { value.cast_unsigned() as f64 }
 }
 
 #[cfg(test)]

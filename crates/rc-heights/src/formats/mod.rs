@@ -18,23 +18,31 @@ mod heading;
 mod ibw;
 mod instrument;
 mod layout;
+mod limit;
 mod lines;
 mod marks;
 mod mask;
 mod mat;
+mod mat_maps;
 mod metropro;
 mod names;
 mod nanoscope;
 pub mod nc_writer;
 mod netcdf;
+mod netcdf_axes;
+mod netcdf_maps;
 pub mod npy;
 mod opd;
+mod opened;
 mod order;
 mod other;
 mod plu;
 mod plux;
 mod png;
+mod points;
 mod quantity;
+mod records;
+mod scalings;
 mod sdf;
 mod sniff;
 mod sur;
@@ -42,6 +50,8 @@ mod surfer;
 mod table;
 pub mod text;
 mod tiff;
+mod tiff_ifd;
+mod tiff_sides;
 mod titles;
 mod unit;
 mod vk4;
@@ -49,8 +59,6 @@ mod x3p;
 mod xyz;
 mod zygo;
 
-use std::fs::File;
-use std::io::Read as _;
 use std::path::Path;
 
 pub use channel::ChannelInfo;
@@ -58,6 +66,8 @@ pub(crate) use decode::{decoded, is_text};
 pub(crate) use fields::shown;
 pub use format::Format;
 pub use layout::{Layout, LayoutError};
+pub use limit::DEFAULT_MAX_BYTES;
+pub(crate) use limit::{check as check_size, check_text};
 pub(crate) use lines::{data_lines, number, words};
 pub use mask::{Mask, MaskError};
 pub use mat::{MatArray, mat_arrays};
@@ -65,6 +75,7 @@ pub(crate) use netcdf::hdf5_table;
 
 use self::channel::{Channels, chosen, named, only};
 use self::heading::Heading;
+use self::opened::Opened;
 use crate::{FormatError, HeightMap, ReadError};
 
 /// Choices for files that can be read in several ways.
@@ -88,11 +99,6 @@ impl Default for ReadParams {
     }
 }
 
-/// Default of [`ReadParams::max_bytes`]: a map of 16384² points.
-///
-/// A program that knows its machine gives its own.
-pub const DEFAULT_MAX_BYTES: u64 = 4 << 30;
-
 /// The format of the file at `path`. For a gzip file, it is the format of the contents.
 ///
 /// # Errors
@@ -109,70 +115,17 @@ pub fn format_of(path: &Path) -> Result<Format, ReadError> {
 /// Those of [`read`], as far as they follow from the first bytes.
 pub fn may_have_sides(path: &Path, params: &ReadParams) -> Result<bool, ReadError> {
     let file = Opened::new(path, params.max_bytes)?;
-    Ok(match layout::format(file.format, params.layout) {
-        Format::Csv => Heading::of(&decoded(&file.bytes)).is_ok_and(|heading| heading.says_sides()),
+    let format = layout::format(file.format, params.layout);
+    if matches!(format, Format::Png | Format::Tiff) {
+        // Their sizes may be behind the levels.
+        let says_sides = if format == Format::Png { png::says_sides } else { tiff::says_sides };
+        let bytes = file.whole(format, params.max_bytes);
+        return bytes.map(|bytes| says_sides(&bytes)).map_err(|problem| ReadError { path: path.to_owned(), problem });
+    }
+    Ok(match format {
+        Format::Csv => Heading::of(&decoded(&file.start)).is_ok_and(|heading| heading.says_sides()),
         format => format.has_sides(),
     })
-}
-
-/// A file whose format is known.
-struct Opened {
-    format: Format,
-    /// The first bytes, or all bytes.
-    bytes: Vec<u8>,
-    /// Source of the other bytes.
-    rest: Option<File>,
-}
-
-impl Opened {
-    /// Opens a file that unpacks to at most `max_bytes`.
-    fn new(path: &Path, max_bytes: u64) -> Result<Self, ReadError> {
-        Self::open(path, max_bytes).map_err(|problem| ReadError { path: path.to_owned(), problem })
-    }
-
-    fn open(path: &Path, max_bytes: u64) -> Result<Self, FormatError> {
-        let mut file = File::open(path).map_err(unreadable)?;
-        if file.metadata().map_err(unreadable)?.is_dir() {
-            return Err(FormatError::Unreadable("it is a folder, not a height map such as .npy or .csv".into()));
-        }
-        let mut bytes = Vec::new();
-        // Enough for a mark, and for the first lines of a text.
-        file.by_ref().take(4096).read_to_end(&mut bytes).map_err(unreadable)?;
-        if bytes.starts_with(archive::GZIP) {
-            file.read_to_end(&mut bytes).map_err(unreadable)?;
-            let bytes = archive::unzipped(&bytes, max_bytes)?;
-            let is_gz = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
-            let name = if is_gz { path.with_extension("") } else { path.to_owned() };
-            return Ok(Self { format: Format::of(&name, &bytes)?, bytes, rest: None });
-        }
-        if bytes.starts_with(archive::ZIP) {
-            file.read_to_end(&mut bytes).map_err(unreadable)?;
-            return Ok(Self { format: Format::of(path, &bytes)?, bytes, rest: None });
-        }
-        let mut format = Format::of(path, &bytes)?;
-        // The first numbers of a text determine its layout. Many lines may precede them.
-        while matches!(format, Format::Csv | Format::Xyz) && !xyz::has_numbers(&bytes) {
-            let as_many = bytes.len() as u64;
-            if file.by_ref().take(as_many).read_to_end(&mut bytes).map_err(unreadable)? == 0 {
-                break;
-            }
-            format = Format::of(path, &bytes)?;
-        }
-        Ok(Self { format, bytes, rest: Some(file) })
-    }
-
-    /// Reads all bytes.
-    fn whole(mut self) -> Result<Vec<u8>, FormatError> {
-        if let Some(mut rest) = self.rest.take() {
-            rest.read_to_end(&mut self.bytes).map_err(unreadable)?;
-        }
-        Ok(self.bytes)
-    }
-}
-
-#[expect(clippy::needless_pass_by_value, reason = "the shape that map_err wants")]
-fn unreadable(cause: std::io::Error) -> FormatError {
-    FormatError::Unreadable(cause.to_string())
 }
 
 /// Reads the height map at `path`, in the units of the file ([`HeightMap::in_metres`]).
@@ -195,12 +148,16 @@ pub fn read(path: &Path) -> Result<HeightMap, ReadError> {
 pub fn read_with(path: &Path, params: &ReadParams) -> Result<HeightMap, ReadError> {
     let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
     let file = Opened::new(path, params.max_bytes)?;
-    if file.format == Format::Npy && file.rest.is_some() && params.channel.is_none() {
+    if file.format == Format::Npy && params.channel.is_none() {
         // Arrays may be as large as memory, so they are not read as bytes first.
-        return checked(HeightMap::bare(npy::read(path)?), &params.missing).map_err(fail);
+        let (stream, bytes) = file.stream();
+        return npy::map(stream, bytes, params.layout, params.max_bytes)
+            .and_then(|map| checked(map, &params.missing))
+            .map_err(fail);
     }
     let format = layout::format(file.format, params.layout);
-    file.whole().and_then(|bytes| parse_with(&bytes, format, params)).map_err(fail)
+    let bytes = file.whole(format, params.max_bytes);
+    bytes.and_then(|bytes| parse_with(&bytes, format, params)).map_err(fail)
 }
 
 /// The channels of the file at `path`, in its order. Their values are not read.
@@ -216,7 +173,7 @@ pub fn channels(path: &Path, params: &ReadParams) -> Result<Vec<ChannelInfo>, Re
         // The file has one array, which may be as large as memory.
         return Ok(vec![ChannelInfo { name: String::new(), is_height: true }]);
     }
-    let channels = file.whole().and_then(|bytes| channels_of(&bytes, format, params));
+    let channels = file.whole(format, params.max_bytes).and_then(|bytes| channels_of(&bytes, format, params));
     channels.map_err(|problem| ReadError { path: path.to_owned(), problem })
 }
 
@@ -257,24 +214,24 @@ fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &ReadParams) -> Channel
         Format::EsriGrid => esri::channels(bytes, &params.missing)?,
         Format::Gsf => only(move || gsf::parse(bytes)),
         Format::Gwy => gwy::channels(bytes, params.mask)?,
-        Format::Hdf5 | Format::NetCdf => netcdf::channels(bytes, format)?,
+        Format::Hdf5 | Format::NetCdf => netcdf_maps::channels(bytes, format, params.layout, params.max_bytes)?,
         Format::Ibw => ibw::channels(bytes)?,
-        Format::Mat => mat::channels(bytes)?,
+        Format::Mat => mat_maps::channels(bytes, params.layout, params.max_bytes)?,
         Format::MetroPro => metropro::channels(bytes)?,
         // Exports as text have the same header.
         Format::Nanoscope if is_text(bytes) => text::channels(bytes, params.layout, &params.missing)?,
         Format::Nanoscope => nanoscope::channels(bytes)?,
-        Format::Npy => only(move || npy::read_from(bytes, bytes.len() as u64).map(HeightMap::bare)),
+        Format::Npy => npy::channels(bytes, params.layout, params.max_bytes),
         Format::Opd => opd::channels(bytes)?,
         Format::Plu => plu::channels(bytes)?,
-        Format::Plux => plux::channels(bytes)?,
-        Format::Png => only(move || png::parse(bytes)),
+        Format::Plux => plux::channels(bytes, params.max_bytes)?,
+        Format::Png => png::channels(bytes, params.max_bytes),
         Format::Sdf => only(move || sdf::parse(bytes)),
-        Format::Sur => sur::channels(bytes)?,
+        Format::Sur => sur::channels(bytes, params.max_bytes)?,
         Format::Surfer => only(move || surfer::parse(bytes)),
-        Format::Tiff => only(move || tiff::parse(bytes)),
+        Format::Tiff => tiff::channels(bytes, params.max_bytes)?,
         Format::Vk4 => vk4::channels(bytes)?,
-        Format::X3p => only(move || x3p::parse(bytes)),
+        Format::X3p => x3p::channels(bytes, params.max_bytes),
         Format::Xyz => xyz::channels(bytes, &params.missing),
         Format::Zygo => zygo::channels(bytes, &params.missing),
     })

@@ -7,9 +7,14 @@ use std::path::Path;
 use npyz::{DType, Deserialize, NpyFile, NpyHeader, Order, TypeChar, WriterBuilder as _};
 use rc_core::{Field, Grid};
 
+use super::channel::{Channel, only};
 use super::field::{field, transposed};
 use super::fields::shown_as_line;
-use crate::{Format, FormatError, ReadError};
+use super::layout::Layout;
+use super::limit;
+use super::points::{self, Kind};
+use super::records::{self, Record};
+use crate::{Format, FormatError, HeightMap, ReadError, Unit};
 
 /// Maximum length of a header that is read.
 ///
@@ -37,39 +42,154 @@ pub fn read(path: &Path) -> Result<Field, ReadError> {
 ///
 /// # Errors
 /// [`FormatError`] when the contents are not valid.
-pub fn read_from(mut file: impl Read, bytes: u64) -> Result<Field, FormatError> {
-    let mut start = Vec::new();
-    file.by_ref().take(12).read_to_end(&mut start).map_err(unreadable)?;
-    if let [0x93, b'N', b'U', b'M', b'P', b'Y', version, _, a, b, more @ ..] = start.as_slice() {
-        // Version 1 has two bytes for the length of the header. Later versions have four.
-        let (c, d) = if *version > 1 { more.first_chunk().map_or((0, 0), |[c, d]| (*c, *d)) } else { (0, 0) };
-        let length = u32::from_le_bytes([*a, *b, c, d]);
-        if length > LONGEST_HEADER {
-            return Err(header("length", &length, "the length of the header of a 2-D array, at most 4096"));
+pub fn read_from(file: impl Read, bytes: u64) -> Result<Field, FormatError> {
+    let npy = Array::open(file, bytes)?;
+    let (order, grid) = (npy.header.order(), npy.grid()?);
+    let stored = npy.values()?;
+    Ok(field(grid, if order == Order::C { stored } else { transposed(&stored, grid) }))
+}
+
+/// The channel of a file, read when it is asked for.
+pub(super) fn channels(bytes: &[u8], layout: Option<Layout>, max_bytes: u64) -> Vec<Channel<'_>> {
+    only(move || map(bytes, bytes.len() as u64, layout, max_bytes))
+}
+
+/// Reads a map, or points on a regular grid, from a file of `bytes` bytes.
+///
+/// Points are the rows or columns of an array of three columns or rows, or records with fields x, y and z.
+///
+/// # Errors
+/// [`FormatError`] when the contents are neither, or need more than `max_bytes` of memory.
+pub(super) fn map(
+    file: impl Read,
+    bytes: u64,
+    layout: Option<Layout>,
+    max_bytes: u64,
+) -> Result<HeightMap, FormatError> {
+    let npy = Array::open(file, bytes)?;
+    if let DType::Record(_) = npy.header.dtype() {
+        return npy.points(max_bytes).map(of_array);
+    }
+    let shape = npy.sides()?;
+    let (order, kind) = (npy.header.order(), Kind::of(Format::Npy, shape, layout)?);
+    if kind == Kind::Map {
+        let grid = npy.grid()?;
+        npy.count(real_type(&npy.header.dtype())?.1)?;
+        // In Fortran order, the values are there twice.
+        limit::check_map(grid, if order == Order::C { 0 } else { 8 }, 0, max_bytes)?;
+        let stored = npy.values()?;
+        return Ok(HeightMap::bare(field(grid, if order == Order::C { stored } else { transposed(&stored, grid) })));
+    }
+    points::check(shape[0].max(shape[1]), max_bytes)?;
+    // The columns of an array in Fortran order follow one another as the rows of its transpose do.
+    let kind = match (kind, order) {
+        (kind, Order::C) => kind,
+        (Kind::Rows, Order::Fortran) => Kind::Columns,
+        (_, Order::Fortran) => Kind::Rows,
+    };
+    points::map(&npy.values()?, kind).map(of_array)
+}
+
+/// The map whose numbers are those of an array, so metres by definition.
+fn of_array(map: HeightMap) -> HeightMap {
+    HeightMap { height_unit: Unit::Array, side_unit: Unit::Array, ..map }
+}
+
+/// An array whose header is read.
+struct Array<R> {
+    header: NpyHeader,
+    file: R,
+    /// Number of bytes of the file.
+    bytes: u64,
+}
+
+impl<R: Read> Array<io::Chain<io::Cursor<Vec<u8>>, R>> {
+    fn open(mut file: R, bytes: u64) -> Result<Self, FormatError> {
+        let mut start = Vec::new();
+        file.by_ref().take(12).read_to_end(&mut start).map_err(unreadable)?;
+        if let [0x93, b'N', b'U', b'M', b'P', b'Y', version, _, a, b, more @ ..] = start.as_slice() {
+            // Version 1 has two bytes for the length of the header. Later versions have four.
+            let (c, d) = if *version > 1 { more.first_chunk().map_or((0, 0), |[c, d]| (*c, *d)) } else { (0, 0) };
+            let length = u32::from_le_bytes([*a, *b, c, d]);
+            if length > LONGEST_HEADER {
+                return Err(header("length", &length, "the length of the header of a 2-D array, at most 4096"));
+            }
+        }
+        let invalid = |cause: io::Error| FormatError::Container {
+            format: Format::Npy,
+            reason: shown_as_line(&cause.to_string()),
+        };
+        let mut file = io::Cursor::new(start).chain(file);
+        Ok(Self { header: NpyHeader::from_reader(&mut file).map_err(invalid)?, file, bytes })
+    }
+}
+
+impl<R: Read> Array<R> {
+    /// Numbers of rows and columns.
+    fn sides(&self) -> Result<[u64; 2], FormatError> {
+        match *self.header.shape() {
+            [ny, nx] => Ok([ny, nx]),
+            [n] => Err(FormatError::profile_in_array(&n.to_string(), "")),
+            ref shape => {
+                let found = format!("{shape:?}, {} dimensions", shape.len());
+                Err(header("shape", &found, "that of a 2-D array"))
+            }
         }
     }
-    let invalid =
-        |cause: io::Error| FormatError::Container { format: Format::Npy, reason: shown_as_line(&cause.to_string()) };
-    let mut file = io::Cursor::new(start).chain(file);
-    let header = NpyHeader::from_reader(&mut file).map_err(invalid)?;
-    let grid = grid_of(&header)?;
-    let (_, size) = real_type(&header.dtype())?;
-    let order = header.order();
-    // Checked before memory is taken, because a damaged header may claim any size. A grid has at most 2^40 points.
-    let needed = size * grid.len() as u64;
-    if bytes < needed {
-        return Err(FormatError::CutShort { grid, needed, found: bytes });
+
+    fn grid(&self) -> Result<Grid, FormatError> {
+        let [ny, nx] = self.sides()?.map(|n| usize::try_from(n).unwrap_or(usize::MAX));
+        Ok(Grid::new(nx, ny)?)
     }
-    let cut_short = |cause: io::Error| match cause.kind() {
-        io::ErrorKind::UnexpectedEof => FormatError::CutShort { grid, needed, found: bytes },
-        _ => unreadable(cause),
-    };
-    let stored = match header.dtype() {
-        DType::Plain(plain) if plain.to_string() == "<f8" => doubles(file, grid.len()),
-        _ => to_f64(NpyFile::with_header(header, file), grid.len()),
-    };
-    let stored = stored.map_err(cut_short)?;
-    Ok(field(grid, if order == Order::C { stored } else { transposed(&stored, grid) }))
+
+    /// Number of values of `size` bytes each.
+    ///
+    /// It is checked before memory is taken, because a damaged header may claim any size.
+    fn count(&self, size: u64) -> Result<usize, FormatError> {
+        let n = self.header.shape().iter().try_fold(1, |n: u64, side| n.checked_mul(*side));
+        let needed = n.unwrap_or(u64::MAX).saturating_mul(size);
+        if self.bytes < needed {
+            return Err(self.cut_short(needed));
+        }
+        Ok(n.and_then(|n| usize::try_from(n).ok()).unwrap_or(usize::MAX))
+    }
+
+    fn cut_short(&self, needed: u64) -> FormatError {
+        let found = self.bytes;
+        self.grid().map_or_else(
+            |_| {
+                let reason = format!("its numbers need {needed} bytes, but the file has {found}; it is truncated");
+                FormatError::Container { format: Format::Npy, reason }
+            },
+            |grid| FormatError::CutShort { grid, needed, found },
+        )
+    }
+
+    fn failed(&self, cause: io::Error, needed: u64) -> FormatError {
+        if cause.kind() == io::ErrorKind::UnexpectedEof { self.cut_short(needed) } else { unreadable(cause) }
+    }
+
+    /// The values in the order of the file.
+    fn values(mut self) -> Result<Vec<f64>, FormatError> {
+        let size = real_type(&self.header.dtype())?.1;
+        let n = self.count(size)?;
+        let read = match self.header.dtype() {
+            DType::Plain(plain) if plain.to_string() == "<f8" => doubles(&mut self.file, n),
+            _ => to_f64(NpyFile::with_header(self.header.clone(), &mut self.file), n),
+        };
+        read.map_err(|cause| self.failed(cause, size * n as u64))
+    }
+
+    /// The map of records.
+    fn points(mut self, max_bytes: u64) -> Result<HeightMap, FormatError> {
+        let DType::Record(fields) = self.header.dtype() else { return Err(records::refused("no records".into())) };
+        let record = Record::of(&fields).map_err(records::refused)?;
+        let n = self.count(record.size as u64)?;
+        points::check(n as u64, max_bytes)?;
+        let read = records::points(&record, &mut self.file, n);
+        let points = read.map_err(|cause| self.failed(cause, record.size as u64 * n as u64))?;
+        points::map_of(points, [n, 3])
+    }
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "the shape that map_err wants")]
@@ -140,31 +260,13 @@ impl RowWriter {
     }
 }
 
-fn grid_of(npy: &NpyHeader) -> Result<Grid, FormatError> {
-    match *npy.shape() {
-        [ny, nx] => Ok(Grid::new(to_side(nx), to_side(ny))?),
-        ref shape => {
-            let found = format!("{shape:?}, {} dimensions", shape.len());
-            Err(header("shape", &found, "that of a 2-D array"))
-        }
-    }
-}
-
-/// A number of elements per side. If it does not fit, no grid accepts the result.
-fn to_side(n: u64) -> usize {
-    usize::try_from(n).unwrap_or(usize::MAX)
-}
-
 /// Kind and size in bytes of a real type.
 fn real_type(dtype: &DType) -> Result<(TypeChar, u64), FormatError> {
-    let refused = |found: String| header("descr", &found, "that of real numbers: f2, f4, f8 or an integer type");
-    let DType::Plain(plain) = dtype else {
-        return Err(refused("records".to_owned()));
-    };
+    let DType::Plain(plain) = dtype else { return Err(records::refused("records".to_owned())) };
     match (plain.type_char(), plain.size_field()) {
         (TypeChar::Float, size @ (2 | 4 | 8)) => Ok((TypeChar::Float, size)),
         (kind @ (TypeChar::Int | TypeChar::Uint), size @ (1 | 2 | 4 | 8)) => Ok((kind, size)),
-        _ => Err(refused(plain.to_string())),
+        _ => Err(records::refused(plain.to_string())),
     }
 }
 

@@ -14,6 +14,7 @@ use super::binary::Number;
 use super::channel::{Channel, Channels};
 use super::fields::{refused, shown_as_line};
 use super::instrument::{map, sides};
+use super::limit;
 use crate::{Format, FormatError, HeightMap};
 
 /// Maximum length of `index.xml`. It does not contain heights.
@@ -24,7 +25,7 @@ const MOST_INFLATION: u64 = 1032;
 
 const MICROMETRE: f64 = 1e-6;
 
-pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
+pub(super) fn channels(bytes: &[u8], max_bytes: u64) -> Channels<'_> {
     let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|cause| container(&cause))?;
     let folder = folder_of(&names(&archive), "index.xml");
     let xml = member(bytes, &format!("{folder}index.xml"), LONGEST_XML)?;
@@ -45,19 +46,20 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
             channels.push(Channel {
                 name: layer.tag_name().name().to_owned(),
                 is_height: true,
-                read: Box::new(move || read(bytes, &file, grid, sides)),
+                read: Box::new(move || read(bytes, &file, grid, sides, max_bytes)),
             });
         }
     }
     Ok(channels)
 }
 
-fn read(bytes: &[u8], file: &str, grid: Grid, sides: [f64; 2]) -> Result<HeightMap, FormatError> {
+fn read(bytes: &[u8], file: &str, grid: Grid, sides: [f64; 2], max_bytes: u64) -> Result<HeightMap, FormatError> {
     let needed = Number::F32.bytes_of(grid);
     let found = (bytes.len() as u64).saturating_mul(MOST_INFLATION);
     if found < needed {
         return Err(FormatError::CutShort { grid, needed, found });
     }
+    limit::check_map(grid, Number::F32.size() as u64, bytes.len() as u64, max_bytes)?;
     let mut values = Number::F32.values(&member(bytes, file, needed)?, grid)?;
     crate::map::scale(&mut values, MICROMETRE);
     Ok(map(grid, values, true, Some(sides)))

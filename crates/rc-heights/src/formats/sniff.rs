@@ -40,6 +40,9 @@ const MARKS: &[(&[u8], Format)] = &[
     (b"\x89PNG\r\n\x1a\n", Format::Png),
     (b"II*\0", Format::Tiff),
     (b"MM\0*", Format::Tiff),
+    // BigTIFF.
+    (b"II+\0", Format::Tiff),
+    (b"MM\0+", Format::Tiff),
     (sur::PLAIN, Format::Sur),
     (sur::COMPRESSED, Format::Sur),
     (nanoscope::MARK, Format::Nanoscope),
@@ -58,7 +61,7 @@ impl Format {
     /// Texts contain it in lines before the numbers.
     #[must_use]
     pub fn has_sides(self) -> bool {
-        !matches!(self, Self::Npy | Self::Png | Self::Tiff)
+        !matches!(self, Self::Npy)
     }
 
     /// The format of a file with name `path` and first bytes `start`.
@@ -123,7 +126,7 @@ impl Format {
             Some("sdf") => mark(Self::Sdf, "it must begin with aISO-1.0 or bISO-1.0"),
             Some("x3p") => mark(Self::X3p, "it must be a zip archive"),
             Some("png") => mark(Self::Png, "it must begin with \\x89PNG"),
-            Some("tif" | "tiff") => mark(Self::Tiff, "it must begin with II* or MM*; BigTIFF is not read"),
+            Some("tif" | "tiff") => mark(Self::Tiff, "it must begin with II or MM and 42 or 43"),
             Some("sur") => mark(Self::Sur, "it must begin with DIGITAL SURF or DSCOMPRESSED"),
             Some("spm") => mark(Self::Nanoscope, "it must begin with the line '\\*File list'"),
             Some("opd") => mark(Self::Opd, "it must begin with a block called Directory"),

@@ -14,6 +14,7 @@ use super::channel::{Channel, Channels, each};
 use super::field::flip;
 use super::fields::{factor, refused, shown_as_line};
 use super::instrument::{Places, map, metres, scale_measured, sides};
+use super::limit;
 use crate::{Format, FormatError, HeightMap};
 
 /// The first bytes of an object with integers that are not compressed.
@@ -68,7 +69,7 @@ struct Object<'a> {
     data: &'a [u8],
 }
 
-pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
+pub(super) fn channels(bytes: &[u8], max_bytes: u64) -> Channels<'_> {
     let mut channels = Vec::new();
     let mut rest = bytes;
     loop {
@@ -84,7 +85,7 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
         let data = object.data;
         let (name, is_height) = (object.name.clone(), object.is_height && !PICTURES.contains(&object.kind));
         let channel = object.is_map().map(|()| {
-            let read = Box::new(move || object.read(is_height));
+            let read = Box::new(move || object.read(is_height, max_bytes));
             Channel { name: name.clone(), is_height, read }
         });
         channels.push((name, channel));
@@ -158,7 +159,8 @@ impl Object<'_> {
         Err(FormatError::Unsupported { format: Format::Sur, what, cure })
     }
 
-    fn read(&self, is_height: bool) -> Result<HeightMap, FormatError> {
+    fn read(&self, is_height: bool, max_bytes: u64) -> Result<HeightMap, FormatError> {
+        self.check_size(max_bytes)?;
         let inflated = if self.compressed { Some(self.inflated()?) } else { None };
         let mut values = self.number.values(inflated.as_deref().unwrap_or(self.data), self.grid)?;
         // Heights of a replica are negative. The file says so, and along which axis the replica is mirrored.
@@ -172,6 +174,16 @@ impl Object<'_> {
         }
         flip(&mut values, self.grid, [self.inversion == 2, self.inversion == 3]);
         Ok(map(self.grid, values, is_height, self.sides))
+    }
+
+    /// Refuses integers that are there and need too much memory.
+    fn check_size(&self, max_bytes: u64) -> Result<(), FormatError> {
+        let (unpacked, inflation) = if self.compressed { (self.number.size() as u64, MOST_INFLATION) } else { (0, 1) };
+        let (stored, needed) = (self.data.len() as u64, self.number.bytes_of(self.grid));
+        if needed > stored.saturating_mul(inflation) {
+            return Err(FormatError::CutShort { grid: self.grid, needed, found: stored });
+        }
+        limit::check_map(self.grid, unpacked, stored, max_bytes)
     }
 
     /// The number of streams, and for each its length after and before decompression.
@@ -199,10 +211,6 @@ impl Object<'_> {
     /// The integers of all streams.
     fn inflated(&self) -> Result<Vec<u8>, FormatError> {
         let needed = self.number.bytes_of(self.grid);
-        let found = (self.data.len() as u64).saturating_mul(MOST_INFLATION);
-        if found < needed {
-            return Err(FormatError::CutShort { grid: self.grid, needed, found });
-        }
         let (lengths, mut at) = self.streams()?;
         let mut integers = Vec::new();
         for [_, stored] in lengths {

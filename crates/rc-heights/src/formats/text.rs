@@ -47,7 +47,7 @@ fn map(text: &str, heading: &Heading, layout: Option<Layout>, marks: &Marks) -> 
     let mut table = Table::of(text, heading)?.of_heights(heading)?;
     let [nx, ny] = table.size;
     if let (Some(what), None, false) = (profile(nx, ny), layout, heading.is_of_rows()) {
-        return Err(FormatError::Profile { what });
+        return Err(FormatError::profile_in_text(what));
     }
     marks.erase(&mut table.values);
     let grid = table.grid()?;

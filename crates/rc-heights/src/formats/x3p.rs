@@ -11,8 +11,10 @@ use zip::ZipArchive;
 
 use super::archive::folder_of;
 use super::binary::Number;
+use super::channel::{Channel, only};
 use super::field::field;
 use super::fields::{factor, positive, refused, shown_as_line};
+use super::limit;
 use crate::{Format, FormatError, HeightMap, Unit};
 
 /// Maximum length of `main.xml`. It does not contain heights.
@@ -23,7 +25,11 @@ const MOST_INFLATION: u64 = 1032;
 
 type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
 
-pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
+pub(super) fn channels(bytes: &[u8], max_bytes: u64) -> Vec<Channel<'_>> {
+    only(move || parse(bytes, max_bytes))
+}
+
+fn parse(bytes: &[u8], max_bytes: u64) -> Result<HeightMap, FormatError> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|cause| container(&cause))?;
     let folder = folder_of(&super::archive::names(&archive), "main.xml");
     let xml = member(&mut archive, &format!("{folder}main.xml"), LONGEST_XML)?;
@@ -40,6 +46,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     if found < needed {
         return Err(FormatError::CutShort { grid, needed, found });
     }
+    limit::check_map(grid, number.size() as u64, bytes.len() as u64, max_bytes)?;
     let mut values = number.values(&member(&mut archive, &format!("{folder}{link}"), needed)?, grid)?;
     if let Ok(link) = text(root, "DataLink", "ValidPointsLink") {
         mask(&mut values, &member(&mut archive, &format!("{folder}{link}"), needed)?)?;

@@ -1,0 +1,96 @@
+//! Directories of TIFF, as far as a tag of them is changed before the file is decoded.
+
+use std::borrow::Cow;
+
+use super::endian::Endian;
+
+/// Tag of the meaning of levels, where 0 means that white is zero.
+const PHOTOMETRIC: u16 = 262;
+/// Tag of the type of numbers, where 1 means unsigned integers.
+const SAMPLE_FORMAT: u16 = 339;
+
+/// Maximum number of directories that are followed. They may refer to each other in a circle.
+const MOST: usize = 256;
+
+/// Places of values in the directories of a file.
+struct Directories<'a> {
+    bytes: &'a [u8],
+    order: Endian,
+    /// Whether places have 64 bits.
+    is_big: bool,
+}
+
+/// The file, in which white is zero only where levels are unsigned integers.
+///
+/// Decoders invert levels of images whose white is zero. For floats they subtract from 1, which loses digits and has no
+/// meaning for heights.
+pub(super) fn floats_as_stored(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let places = Directories::of(bytes).map(|directories| directories.inverted()).unwrap_or_default();
+    if places.is_empty() {
+        return Cow::Borrowed(bytes);
+    }
+    let mut changed = bytes.to_vec();
+    for place in places {
+        changed[place] = 1;
+    }
+    Cow::Owned(changed)
+}
+
+impl<'a> Directories<'a> {
+    fn of(bytes: &'a [u8]) -> Option<Self> {
+        let order = match bytes.get(..2)? {
+            b"II" => Endian::Little,
+            b"MM" => Endian::Big,
+            _ => return None,
+        };
+        Some(Self { bytes, order, is_big: order.i16_at(bytes, 2) == 43 })
+    }
+
+    /// The lower byte of the meaning of levels, in each directory whose numbers are not unsigned.
+    fn inverted(&self) -> Vec<usize> {
+        let (mut at, mut found) = (self.place(if self.is_big { 8 } else { 4 }), Vec::new());
+        for _ in 0..MOST {
+            let (first, n) = self.entries(at);
+            if n == 0 {
+                break;
+            }
+            let entry = |tag| (0..n).map(|i| first + i * self.entry()).find(|at| self.u16(*at) == tag);
+            let value = |tag| entry(tag).map(|at| at + if self.is_big { 12 } else { 8 });
+            if let (Some(meaning), Some(kind)) = (value(PHOTOMETRIC), value(SAMPLE_FORMAT))
+                && self.u16(meaning) == 0
+                && self.u16(kind) > 1
+            {
+                found.push(meaning + usize::from(self.order == Endian::Big));
+            }
+            at = self.place(first + n * self.entry());
+        }
+        found
+    }
+
+    /// Place of the first entry of the directory at `at`, and the number of entries. It is 0 where there is none.
+    fn entries(&self, at: usize) -> (usize, usize) {
+        let (first, n) =
+            if self.is_big { (at.saturating_add(8), self.place(at)) } else { (at + 2, self.u16(at).into()) };
+        let is_there = at > 0 && n < 1 << 16 && first + n * self.entry() <= self.bytes.len();
+        (first, if is_there { n } else { 0 })
+    }
+
+    /// Bytes of an entry.
+    fn entry(&self) -> usize {
+        if self.is_big { 20 } else { 12 }
+    }
+
+    /// The place that is stored at `at`, which is 0 beyond the end.
+    fn place(&self, at: usize) -> usize {
+        let stored = if self.is_big {
+            self.order.i64_at(self.bytes, at).cast_unsigned()
+        } else {
+            self.order.u32_at(self.bytes, at).into()
+        };
+        usize::try_from(stored).unwrap_or(0).min(self.bytes.len())
+    }
+
+    fn u16(&self, at: usize) -> u16 {
+        self.order.i16_at(self.bytes, at).cast_unsigned()
+    }
+}
