@@ -32,6 +32,7 @@ mod safe_round;
 mod shares;
 mod start;
 mod state;
+mod stop;
 mod sums;
 mod uniform;
 

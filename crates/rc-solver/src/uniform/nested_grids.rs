@@ -54,13 +54,19 @@ impl<'a> NestedGrids<'a> {
         let n_levels = coarser.len() + 1 + self.n_above;
         let finer = coarser.iter().rev().skip(1).chain([heights]).map(Field::grid);
         let (mut levels, mut start, mut values) = (Vec::with_capacity(n_levels), Start::Nothing, None);
-        for (heights, finer) in coarser.iter().rev().zip(finer) {
-            let (descent, outcome) = self.solve_level(heights, start, n_levels, &mut levels);
-            let is_half = [heights.grid().nx() * 2, heights.grid().ny() * 2] == [finer.nx(), finer.ny()];
+        for (level, (coarse, finer)) in coarser.iter().rev().zip(finer).enumerate() {
+            let (descent, outcome) = self.solve_level(coarse, start, [level, n_levels], &mut levels);
+            if self.observer.should_stop() {
+                // Levels between would only improve the start.
+                start = Start::Pressure(prolong(&descent, heights.grid()));
+                values = None;
+                break;
+            }
+            let is_half = [coarse.grid().nx() * 2, coarse.grid().ny() * 2] == [finer.nx(), finer.ny()];
             values = self.values(&descent, &outcome, n_levels - levels.len()).filter(|_| is_half);
             start = Start::Pressure(prolong(&descent, finer));
         }
-        let (descent, outcome) = self.solve_level(heights, start, n_levels, &mut levels);
+        let (descent, outcome) = self.solve_level(heights, start, [coarser.len(), n_levels], &mut levels);
         let coarser = if self.n_above == 0 { values } else { self.values(&descent, &outcome, self.n_above) };
         FinestGrid { descent, outcome, levels, coarser }
     }
@@ -75,18 +81,18 @@ impl<'a> NestedGrids<'a> {
         })
     }
 
-    /// Solves the next of `n_levels` levels.
+    /// Solves a level, whose number is below `n_levels`.
     fn solve_level<'h>(
         &self,
         heights: &'h Field,
         start: Start,
-        n_levels: usize,
+        [level, n_levels]: [usize; 2],
         levels: &mut Vec<LevelInfo>,
     ) -> (Descent<'h>, Outcome)
     where
         'a: 'h,
     {
-        let (level, grid) = (levels.len(), heights.grid());
+        let grid = heights.grid();
         self.observer.notify(&Event::Level { grid, level, n_levels });
         let wanted = self.params.bound.aim();
         let above = n_levels - 1 - level;
