@@ -37,12 +37,7 @@ impl Descent<'_> {
     ///
     /// # Errors
     /// [`Stopped`] when the observer wants to stop.
-    pub(super) fn round(
-        &mut self,
-        steps: usize,
-        sums: &GapSums,
-        observer: &dyn Observer,
-    ) -> Result<GapSums, Stopped> {
+    pub(super) fn round(&mut self, steps: usize, sums: &GapSums, observer: &dyn Observer) -> Result<GapSums, Stopped> {
         // Without a start, contact is at first too large at any load. Of operators of the caller nothing is known. Free
         // borders bend the gap of a start over long distances, so whole regions would join and press.
         let is_periodic = self.boundary() == Boundary::Periodic;

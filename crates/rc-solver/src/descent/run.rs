@@ -5,7 +5,6 @@ use rc_core::{Event, Observer};
 use super::observed::ObservedMesh;
 use super::outcome::Outcome;
 use super::state::Descent;
-use super::stop::Stopped;
 use super::sums::GapSums;
 use crate::ErrorBound;
 
@@ -109,14 +108,19 @@ impl Descent<'_> {
             } else {
                 self.round(history.steps, &sums, watch.observer)
             };
-            match next {
-                Ok(next) => sums = next,
-                Err(Stopped) => {
-                    self.admit();
-                    return self.stopped(goal, sums);
-                }
-            }
+            let Ok(next) = next else {
+                self.admit();
+                return self.stopped(goal, sums);
+            };
+            sums = next;
         }
+    }
+
+    /// The outcome of the start, without a step, for a solve that was stopped before.
+    pub(crate) fn certify_start(&mut self, goal: Goal, watch: &DescentObserver<'_>) -> Outcome {
+        let sums = self.start();
+        self.tell(watch, [sums.error(self.problem, self.n_cell()), goal.tolerance], &sums);
+        self.unfinished(goal, &sums)
     }
 
     /// The outcome when the observer wants to stop.

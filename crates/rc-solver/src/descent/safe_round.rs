@@ -29,12 +29,9 @@ impl Descent<'_> {
     pub(super) fn safe_round(&mut self, sums: &GapSums, observer: &dyn Observer) -> Result<GapSums, Stopped> {
         let (pressure, gap) = (self.pressure.clone(), self.gap.clone());
         let zero_gap = self.zero_gap;
-        let sums = match self.round(1, sums, observer) {
-            Ok(sums) => sums,
-            Err(Stopped) => {
-                (self.pressure, self.gap) = (pressure, gap);
-                return Err(Stopped);
-            }
+        let Ok(sums) = self.round(1, sums, observer) else {
+            (self.pressure, self.gap) = (pressure, gap);
+            return Err(Stopped);
         };
         let part = self.best_part(&pressure, &gap, zero_gap);
         if part >= 1.0 {

@@ -8,7 +8,7 @@ use rc_core::{Event, Field, Kernel, Observer};
 use super::levels::nest_without_pits;
 use super::prolongation::prolong;
 use crate::IterationParams;
-use crate::descent::{Descent, DescentObserver, Goal, Outcome, Start, uniform_operators};
+use crate::descent::{Descent, DescentObserver, Goal, Outcome, Start, certifying_operators, uniform_operators};
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues};
 
@@ -100,14 +100,23 @@ impl<'a> NestedGrids<'a> {
             0 => wanted,
             _ => self.problem.measure.coarse_tolerance(above - 1).max(wanted),
         };
-        let operators = uniform_operators(grid, self.kernel);
-        let mut descent = Descent::new(heights.values(), grid, operators, self.problem, start);
         let goal = Goal {
             tolerance,
             max_iterations: self.params.max_iterations,
             certify: (above == 0).then_some(self.params.bound),
         };
-        let outcome = descent.run(goal, &DescentObserver { observer: self.observer, mesh: &grid });
+        let (values, watch) = (heights.values(), DescentObserver { observer: self.observer, mesh: &grid });
+        let (descent, outcome) = if above == 0 && !levels.is_empty() && self.observer.should_stop() {
+            let operators = certifying_operators(grid, self.kernel);
+            let mut descent = Descent::without_steps(values, grid, operators, self.problem, start);
+            let outcome = descent.certify_start(goal, &watch);
+            (descent, outcome)
+        } else {
+            let operators = uniform_operators(grid, self.kernel);
+            let mut descent = Descent::new(values, grid, operators, self.problem, start);
+            let outcome = descent.run(goal, &watch);
+            (descent, outcome)
+        };
         levels.push(descent.info());
         (descent, outcome)
     }
