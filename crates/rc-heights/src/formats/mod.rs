@@ -27,6 +27,7 @@ mod opd;
 mod plu;
 mod plux;
 mod png;
+mod points;
 mod sdf;
 mod sniff;
 mod sur;
@@ -51,6 +52,7 @@ pub(crate) use lines::{data_lines, number, words};
 pub use mask::{Mask, MaskError};
 pub use mat::{MatArray, mat_arrays};
 pub(crate) use netcdf::hdf5_table;
+pub use points::of_points;
 
 use self::channel::{Channels, chosen, named, only};
 use self::heading::Heading;

@@ -98,7 +98,7 @@ fn irregular(message: String) -> FormatError {
     FormatError::Irregular(message + "; layout = matrix reads each line as a row of the map")
 }
 
-fn on_grid(points: Vec<[f64; 3]>) -> Result<HeightMap, FormatError> {
+pub(super) fn on_grid(points: Vec<[f64; 3]>) -> Result<HeightMap, FormatError> {
     let axes = [Axis::of("x", &points, |point| point[0])?, Axis::of("y", &points, |point| point[1])?];
     let grid = Grid::new(axes[0].n, axes[1].n)?;
     if grid.len() > MOST_MISSING * points.len() {
