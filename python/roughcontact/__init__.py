@@ -19,6 +19,7 @@ for contact mechanics of rough surfaces*, Int. J. Solids Struct. 49 (2012).
 """
 
 from roughcontact._core import __version__
+from roughcontact._foreign import InputWarning
 from roughcontact._maps import HeightMap, channels, inspect, prepare, read
 from roughcontact._records import Certificate, ContactSpot, Elements, Leakage, StressDistribution
 from roughcontact._result import Result, load
@@ -35,6 +36,7 @@ __all__ = [
     "Elements",
     "FieldsAt",
     "HeightMap",
+    "InputWarning",
     "Interrupted",
     "Leakage",
     "NotConvergedError",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Union
 
 import numpy as np
@@ -18,6 +18,10 @@ Method = Literal["adaptive", "uniform", "gauss-seidel"]
 Path = Union[str, "os.PathLike[str]"]
 #: Units of the lengths of a file.
 LengthUnit = Literal["m", "cm", "mm", "um", "nm", "angstrom", "pm"]
+#: Values that mark missing points of a file.
+Missing = Union[float, Sequence[float]]
+#: What masked points of a file are: missing, or points like others.
+Mask = Literal["use", "ignore"]
 
 
 #: Keys that are numbers along x and along y, and may be pairs.
@@ -30,6 +34,8 @@ def plain(keys: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _plain(name: str, value: Any) -> Any:
+    if name == "missing" and not isinstance(value, str):
+        return [float(mark) for mark in np.ravel(value)]
     if isinstance(value, (str, int, float)):
         # Numbers of NumPy that are floats too keep their value.
         return float(value) if type(value) is np.float64 else value

@@ -6,13 +6,14 @@ import json
 import os
 import tempfile
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal, Union
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from roughcontact import _core
-from roughcontact._keys import Grid, LengthUnit, Path, length, plain
+from roughcontact._foreign import checked_shape, found_in, refuse_line_scan, tell
+from roughcontact._keys import Grid, LengthUnit, Mask, Missing, Path, length, plain
 
 if TYPE_CHECKING:
     from roughcontact._result import Result
@@ -30,7 +31,9 @@ class HeightMap:
     Parameters
     ----------
     heights : array_like, shape (ny, nx)
-        Heights (m), positive towards the half-space; NaN where nothing was measured.
+        Heights (m), positive towards the half-space; NaN where nothing was measured. An array of xarray is read like the
+        file that it would write: its attribute ``units``, its coordinates along x and y, and its marks of missing points
+        count. Points, as an array of shape (n, 3) or a table with columns x, y and z, are put on their grid if it is regular.
     sides : (float, float), optional
         Sides of the map along x and y (m), positive.
     """
@@ -43,8 +46,12 @@ class HeightMap:
     sides: Sides | None
 
     def __init__(self, heights: ArrayLike, sides: Sides | None = None) -> None:
-        self.heights = as_heights(heights)
-        self.sides = None if sides is None else _sides(sides)
+        given = None if sides is None else _sides(sides)
+        self.heights, known, doubts = map_parts(heights, is_map=given is not None)
+        if given is not None and known is not None:
+            known, _ = _sides_of(self.heights.shape, known, *given, names=("sides", "sides"))
+        self.sides = known if given is None else given
+        tell(doubts, strict=False)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -89,22 +96,37 @@ def as_heights(heights: Any) -> Floats:
         array = np.require(array, np.float64, ["C", "A"])
     except (TypeError, ValueError) as cause:
         raise ValueError(f"heights: must be a 2-D array of numbers, shape (ny, nx): {cause}") from None
+    if array.ndim == 1:
+        raise ValueError(f"heights: must be a 2-D array, shape (ny, nx); {array.size} heights along one dimension are a profile, not a map")
     if array.ndim != 2:
         raise ValueError(f"heights: must be a 2-D array, shape (ny, nx), not of shape {array.shape}")
     return array
 
 
-def map_parts(heights: Any) -> tuple[Floats, Sides | None]:
-    """Array and size of anything that has heights: an array, a map, a topography, an array with names."""
+class Parts(NamedTuple):
+    """A map of any kind."""
+
+    heights: Floats
+    sides: Sides | None = None
+    #: What was assumed.
+    doubts: tuple[str, ...] = ()
+
+
+def map_parts(heights: Any, *, is_map: bool = False) -> Parts:
+    """Array and size of anything that has heights: an array, a map, a topography, an array or a table with names, points.
+
+    An array of a few columns is known to be a map with ``is_map``.
+    """
     if isinstance(heights, HeightMap):
-        return heights.heights, heights.sides
+        return Parts(heights.heights, heights.sides)
     if callable(getattr(heights, "heights", None)) and hasattr(heights, "physical_sizes"):
-        return _of_topography(heights)
-    dimensions = getattr(heights, "dims", None)
-    by_names: Any = heights
-    if dimensions is not None and tuple(dimensions) == ("x", "y"):
-        by_names = by_names.transpose("y", "x")
-    return as_heights(by_names), None
+        refuse_line_scan(heights)
+        return Parts(*_of_topography(heights))
+    found = found_in(heights)
+    array, sides = as_heights(found.heights), found.sides
+    if sides is None and not is_map:
+        array, sides = checked_shape(array)
+    return Parts(array, sides, found.doubts)
 
 
 def _of_topography(topography: Any) -> tuple[Floats, Sides]:
@@ -129,24 +151,38 @@ def _sides(sides: Any) -> Sides:
 _SAME_LENGTH = 1e-3
 
 
-def _sides_of(shape: tuple[int, ...], known: Sides | None, cell: float | None, cell_y: float | None) -> Sides | None:
-    """The size of a map: its own, which ``cell`` and ``cell_y`` must not contradict, or the given one."""
-    given = [None if side is None else length(name, side) for name, side in (("cell", cell), ("cell_y", cell_y))]
+def _sides_of(
+    shape: tuple[int, ...],
+    known: Sides | None,
+    cell: float | None,
+    cell_y: float | None,
+    names: tuple[str, str] = ("cell", "cell_y"),
+) -> tuple[Sides | None, tuple[str, ...]]:
+    """The size of a map and what was assumed of it: its own, which the given one must not contradict, or the given one."""
+    given = [None if side is None else length(name, side) for name, side in zip(names, (cell, cell_y), strict=True)]
     if known is not None:
-        for name, extent, side, own in zip(("cell", "cell_y"), ("wide", "high"), given, known, strict=True):
+        for name, extent, side, own in zip(names, ("wide", "high"), given, known, strict=True):
             if side is not None and abs(side / own - 1.0) > _SAME_LENGTH:
                 raise ValueError(f"heights: the map is {own:g} m {extent}, but {name} says {side:g} m; omit {name}")
-        return known
+        return known, ()
     side, side_y = given
     if side is None:
         if side_y is not None:
             raise ValueError("cell: must be given (m) beside cell_y")
-        return None
+        return None, ()
+    if side_y is not None:
+        return (side, side_y), ()
+    return equal_spacings(shape, side)
+
+
+def equal_spacings(shape: tuple[int, ...], side: float) -> tuple[Sides, tuple[str, ...]]:
+    """The size of a map that is ``side`` wide and has equal spacings along x and y, and what was assumed of it."""
     ny, nx = shape
-    if side_y is None and nx != ny:
-        squares = f"{side * ny / nx:g} if the spacing is the same along x and y, {side:g} if the whole map is a square"
-        raise ValueError(f"cell_y: must be given (m) for a map of {nx} x {ny} points: {squares}")
-    return side, side if side_y is None else side_y
+    if nx == ny:
+        return (side, side), ()
+    side_y = side * ny / nx
+    assumed = f"assumed: equal spacings along x and y, so the map of {nx} x {ny} points is {side:g} m x {side_y:g} m; cell_y says otherwise"
+    return (side, side_y), (assumed,)
 
 
 def pair(sides: list[float] | None) -> Sides | None:
@@ -177,6 +213,9 @@ def read(
     height_scale: float | None = None,
     channel: str | None = None,
     layout: Literal["matrix", "xyz"] | None = None,
+    missing: Missing | None = None,
+    mask: Mask | None = None,
+    strict: bool = False,
 ) -> HeightMap:
     """Read a height map of any format that the command line reads.
 
@@ -192,15 +231,28 @@ def read(
         Channel of a file with several; :func:`channels` lists them. Default: the first with heights.
     layout : {"matrix", "xyz"}, optional
         Layout of an ambiguous text of numbers: a row of the map in each line, or a point in each line.
+    missing : float or sequence of float, optional
+        Values that mark missing points, in the numbers of the file, beside those that the file declares.
+    mask : {"use", "ignore"}, default "use"
+        Whether masked points of a file are missing.
+    strict : bool, default False
+        Raise ``ValueError`` instead of warning with :class:`InputWarning`.
 
     Returns
     -------
     HeightMap
         Heights (m), with NaN where nothing was measured, and the size if the file has it.
     """
-    keys = plain({"unit": unit, "height_scale": height_scale, "channel": channel, "layout": layout})
-    heights, sides = _core.read(os.fspath(path), keys)
-    return HeightMap(heights, pair(sides))
+    keys = {"unit": unit, "height_scale": height_scale, "channel": channel, "layout": layout, "missing": missing, "mask": mask}
+    heights, sides = _core.read(os.fspath(path), plain(keys))
+    return of_parts(heights, pair(sides))
+
+
+def of_parts(heights: Floats, sides: Sides | None) -> HeightMap:
+    """The map of an array that is known to be one."""
+    made = HeightMap.__new__(HeightMap)
+    made.heights, made.sides = heights, sides
+    return made
 
 
 def prepare(
@@ -217,6 +269,9 @@ def prepare(
     low_pass: float | None = None,
     resample: Grid | None = None,
     repeat: str | None = None,
+    missing: Missing | None = None,
+    mask: Mask | None = None,
+    strict: bool = False,
 ) -> HeightMap:
     """Treat a measured map, as ``rc surface`` does, in the order of the parameters.
 
@@ -227,8 +282,7 @@ def prepare(
     heights : array_like of shape (ny, nx), HeightMap or path
         The map (m).
     cell, cell_y : float, optional
-        Sides (m) along x and y, where the map does not know them. A map that has as many points along x as along y needs no
-        ``cell_y``; any other does.
+        Sides (m) along x and y, where the map does not know them. Without ``cell_y``, spacings are equal along x and y.
     crop : str, optional
         The part that is kept: ``"square"``, or numbers of points such as ``"512"``, ``"512x256"``, ``"512x256+100+50"``.
     flip : str or sequence of str, optional
@@ -247,14 +301,19 @@ def prepare(
         New numbers of points along x and y on the same area.
     repeat : str, optional
         Copies of a periodic map side by side: ``"3x4"``, or ``"square"`` (as many as make a square cell).
+    missing, mask : optional
+        How a file is read, as for :func:`read`.
+    strict : bool, default False
+        Raise ``ValueError`` instead of warning with :class:`InputWarning`.
 
     Returns
     -------
     HeightMap
         The map after all treatments.
     """
-    array, sides = map_parts(read(heights) if isinstance(heights, (str, os.PathLike)) else heights)
-    sides = _sides_of(array.shape, sides, cell, cell_y)
+    array, known, doubts = map_parts(_read_or_given(heights, missing, mask, strict))
+    sides, assumed = _sides_of(array.shape, known, cell, cell_y)
+    tell(doubts + assumed, strict)
     if flip is not None and not isinstance(flip, str):
         flip = ",".join(map(str, flip))
     flags = {
@@ -270,11 +329,26 @@ def prepare(
     }
     words = [word for flag, value in plain(flags).items() for word in (flag, str(value))]
     treated, sides_after = _core.treat(array, sides, words)
-    return HeightMap(treated, pair(sides_after))
+    return of_parts(treated, pair(sides_after))
+
+
+def _read_or_given(heights: Any, missing: Missing | None, mask: Mask | None, strict: bool) -> Any:
+    """The map of a file, or anything else as it is, to which keywords for files do not apply."""
+    if isinstance(heights, (str, os.PathLike)):
+        return read(heights, missing=missing, mask=mask, strict=strict)
+    for name, value in (("missing", missing), ("mask", mask)):
+        if value is not None:
+            raise ValueError(f"{name}: is for files; omit it, because the heights are an array (m)")
+    return heights
 
 
 def inspect(
-    what: ArrayLike | HeightMap | Surface | Result | Path, *, cell: float | None = None, cell_y: float | None = None
+    what: ArrayLike | HeightMap | Surface | Result | Path,
+    *,
+    cell: float | None = None,
+    cell_y: float | None = None,
+    missing: Missing | None = None,
+    mask: Mask | None = None,
 ) -> dict[str, Any]:
     """Statistics of a surface or of a result, as ``rc inspect --json`` prints them.
 
@@ -283,7 +357,9 @@ def inspect(
     what : array_like, HeightMap, Surface, Result or path
         Heights (m), a random surface, a result, or a file or result folder.
     cell, cell_y : float, optional
-        Sides (m) of a map that does not know them. Default of ``cell_y``: ``cell``, as for :func:`solve`.
+        Sides (m) of a map that does not know them. Without ``cell_y``, spacings are equal along x and y.
+    missing, mask : optional
+        How a file is read, as for :func:`read`.
 
     Returns
     -------
@@ -307,6 +383,8 @@ def inspect(
     elif is_folder:
         found = json.loads(_core.inspect_result(os.fspath(what)))  # type: ignore[arg-type]
     else:
-        array, sides = map_parts(read(what) if isinstance(what, (str, os.PathLike)) else what)
-        found = json.loads(_core.inspect_map(array, sides, plain({"cell": cell, "cell_y": cell_y})))
+        array, known, doubts = map_parts(_read_or_given(what, missing, mask, strict=False))
+        sides, assumed = _sides_of(array.shape, known, cell, cell_y)
+        tell(doubts + assumed, strict=False)
+        found = json.loads(_core.inspect_map(array, sides, {}))
     return found

@@ -28,6 +28,12 @@ def _locked(field: Floats) -> Floats:
     return field
 
 
+def told(result: Result) -> list[str]:
+    """The texts of what the solve warned of, as far as they are known without the summary, which takes longer."""
+    warnings_of = getattr(result._source, "warnings", None)
+    return [] if warnings_of is None else [text for _, text in warnings_of()]
+
+
 class Result:
     """A solved contact problem.
 
@@ -132,6 +138,11 @@ class Result:
         summary: dict[str, Any] = json.loads(self._source.summary_json())
         return summary
 
+    @cached_property
+    def warnings(self) -> list[dict[str, str]]:
+        """What is in doubt about input and result: ``code`` and ``text`` of each, as in ``summary.json``."""
+        return list(self.summary.get("warnings") or [])
+
     @property
     def cells(self) -> dict[str, Any]:
         """The summary as a row of a sweep's table, by column. From ``leakage`` it takes the permeances, their errors and ``percolates``."""
@@ -226,7 +237,12 @@ class Result:
 
     @cached_property
     def displacement(self) -> Floats:
-        """Displacement of the elastic surface (m), shape (ny, nx), with mean zero, read-only."""
+        """Displacement v of the elastic surface (m), shape (ny, nx), positive away from the rough surface, read-only.
+
+        In contact, ``displacement - heights`` is constant, and elsewhere it is larger by the gap. The displacement of a
+        periodic half-space has mean zero, that of a layer the mean by which the mean pressure compresses it, and that of a
+        patch with free borders is relative to points far away. The first access takes one application of the operator.
+        """
         return _locked(self._source.displacement())
 
     @property

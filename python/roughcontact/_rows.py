@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, Union
 
 from roughcontact import _core
 from roughcontact._result import Result
-from roughcontact._solve import solve_keys
+from roughcontact._solve import solve_keys, surface_of
 
 #: An executor, or a function that makes one. If a worker is killed and breaks the executor, the function makes another.
 Workers = Union[Executor, Callable[[], Executor]]
@@ -64,7 +64,7 @@ Found = Union[Row, ValueError]
 
 def solve_row(job: Job) -> Row:
     """Solves a row in this process."""
-    result = solve_keys(job.heights, job.keys, is_row=True, **job.options)
+    result = solve_keys(surface_of(job.heights, job.keys), is_row=True, **job.options)
     if job.folder is not None:
         _replace(job.folder, result.save)
     fields = None

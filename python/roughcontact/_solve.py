@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Callable
-from typing import Any, Literal, Union
+from typing import Any, Literal, NamedTuple, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roughcontact import _core
-from roughcontact._keys import Boundary, Grid, LengthUnit, Method, Path, plain
-from roughcontact._maps import Heights, map_parts
-from roughcontact._result import Result
+from roughcontact._foreign import tell
+from roughcontact._keys import Boundary, Grid, LengthUnit, Mask, Method, Missing, Path, plain
+from roughcontact._maps import Heights, equal_spacings, map_parts
+from roughcontact._result import Result, told
 from roughcontact._run import Bar, Interrupted, NotConvergedError, NotConvergedWarning, ProgressOption, callback, checked
 from roughcontact._surface import Surface
 
@@ -21,7 +22,7 @@ from roughcontact._surface import Surface
 Kernel = Union[Literal["love", "spectral"], Callable[[NDArray[np.float64], NDArray[np.float64]], Any]]
 
 #: Arguments that are no keys of a scene.
-_OPTIONS = ("heights", "scene", "kernel", "progress", "check")
+_OPTIONS = ("heights", "scene", "kernel", "progress", "check", "strict")
 
 
 def solve(
@@ -35,6 +36,8 @@ def solve(
     height_scale: float | None = None,
     channel: str | None = None,
     layout: Literal["matrix", "xyz"] | None = None,
+    missing: Missing | None = None,
+    mask: Mask | None = None,
     waves: int | None = None,
     hurst: float | None = None,
     rms: float | None = None,
@@ -68,6 +71,7 @@ def solve(
     time_limit: float | str | None = None,
     progress: ProgressOption = False,
     check: bool = False,
+    strict: bool = False,
 ) -> Result:
     """Solve one contact problem. The numbers are those of ``rc solve``, bit for bit.
 
@@ -75,14 +79,15 @@ def solve(
     ----------
     heights : array_like of shape (ny, nx), HeightMap, Surface or path, optional
         The rough surface (m), positive towards the half-space. Arrays of float64, row by row, are read in place. Other
-        arrays are converted. A topography of SurfaceTopography and a map from :func:`read` bring their size along. A
-        :class:`Surface` is evaluated only where the solver needs it. A path names the file of a height map. Default: the
+        arrays are converted. A topography of SurfaceTopography and a map from :func:`read` bring their size along, and so do
+        arrays of xarray with coordinates and points, as for :class:`HeightMap`. A :class:`Surface` is evaluated only where the solver needs it. A path names the file of a height map. Default: the
         random surface of the keywords below, as for :class:`Surface`.
     scene : path, optional
         A scene file. Keywords override its keys.
     cell, cell_y : float, optional
-        Sides of the periodic cell along x and y (m). An array needs ``cell``. Default of ``cell_y``: ``cell``.
-    unit, height_scale, channel, layout : optional
+        Sides of the periodic cell along x and y (m). An array needs ``cell``. Without ``cell_y``, spacings of a map are equal
+        along x and y, and the cell of other surfaces is a square.
+    unit, height_scale, channel, layout, missing, mask : optional
         How a file is read, as for :func:`read`.
     spectrum, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, low_cut, amplitudes : optional
         A surface of waves instead of ``heights``, as for :class:`Surface`.
@@ -136,6 +141,9 @@ def solve(
         True draws a bar, if tqdm is installed. A function is called with :class:`Progress`.
     check : bool, default False
         Raise :class:`NotConvergedError` instead of warning with :class:`NotConvergedWarning`.
+    strict : bool, default False
+        Raise ``ValueError`` instead of warning with :class:`InputWarning`. What only the solution shows is raised after the
+        solve, and the attribute ``result`` of the error is the solution.
 
     Returns
     -------
@@ -152,7 +160,10 @@ def solve(
     """
     given = locals()
     keys = plain({name: value for name, value in given.items() if name not in _OPTIONS})
-    result = solve_keys(heights, keys, scene=scene, kernel=kernel, progress=progress)
+    problem = surface_of(heights, keys)
+    tell(problem.doubts, strict)
+    result = solve_keys(problem, scene=scene, kernel=kernel, progress=progress)
+    _tell_of(result, strict)
     if result.failure is not None:
         if check:
             raise NotConvergedError(result.failure, result)
@@ -160,9 +171,27 @@ def solve(
     return result
 
 
+def _tell_of(result: Result, strict: bool) -> None:
+    """Warns of what the solve told, or raises it with ``strict``."""
+    try:
+        tell(told(result), strict, stacklevel=4)
+    except ValueError as error:
+        error.result = result  # type: ignore[attr-defined]
+        raise
+
+
+class Problem(NamedTuple):
+    """Keys with those of the surface, and array and size where heights are an array."""
+
+    keys: dict[str, Any]
+    heights: Any = None
+    sides: Any = None
+    #: What was assumed.
+    doubts: tuple[str, ...] = ()
+
+
 def solve_keys(
-    heights: Any,
-    keys: dict[str, Any],
+    problem: Problem,
     *,
     scene: Path | None = None,
     kernel: Kernel | None = None,
@@ -170,7 +199,7 @@ def solve_keys(
     is_row: bool = False,
 ) -> Result:
     """Solves the problem of these keys, whether or not it converges."""
-    keys, array, sides = surface_of(heights, keys)
+    keys, array, sides, _ = problem
     symbol = kernel if callable(kernel) else None
     if kernel is not None and symbol is None:
         keys["kernel"] = kernel
@@ -214,15 +243,21 @@ def _early(
     return ended
 
 
-def surface_of(heights: Any, keys: dict[str, Any]) -> tuple[dict[str, Any], Any, Any]:
-    """The keys with those of the surface, and array and size where heights are an array."""
+def surface_of(heights: Any, keys: dict[str, Any]) -> Problem:
+    """The problem of these keys on this surface."""
     if heights is None:
-        return keys, None, None
+        return Problem(keys)
     if isinstance(heights, Surface):
-        return {**heights.keys(), **keys}, None, None
+        return Problem({**heights.keys(), **keys})
     if isinstance(heights, (str, os.PathLike)):
-        return {**keys, "heights": os.fspath(heights)}, None, None
-    for name in ("unit", "height_scale", "channel", "layout", "spectrum"):
+        return Problem({**keys, "heights": os.fspath(heights)})
+    for name in ("unit", "height_scale", "channel", "layout", "missing", "mask", "spectrum"):
         if name in keys:
             raise ValueError(f"{name}: is for files; omit it, because the heights are an array (m)")
-    return keys, *map_parts(heights)
+    array, sides, doubts = map_parts(heights)
+    cell = keys.get("cell")
+    if sides is None and "cell_y" not in keys and isinstance(cell, (int, float)) and 0.0 < cell < np.inf and array.size:
+        (_, side_y), assumed = equal_spacings(array.shape, float(cell))
+        if assumed:
+            keys, doubts = {**keys, "cell_y": side_y}, doubts + assumed
+    return Problem(keys, array, sides, doubts)

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughcontact import _core
-from roughcontact._keys import Boundary, Grid, Method, Path, plain
-from roughcontact._maps import HeightMap, Heights
+from roughcontact._foreign import tell
+from roughcontact._keys import Boundary, Grid, Mask, Method, Missing, Path, plain
+from roughcontact._maps import Heights, of_parts
 from roughcontact._result import Result
 from roughcontact._rows import FieldsAt, Found, Job, Workers, by_workers, here
 from roughcontact._run import NotConvergedError, NotConvergedWarning, ProgressOption, RowBar, checked
@@ -31,7 +32,7 @@ Seeds = Union[Iterable[int], str]
 _OPTIONS = frozenset(
     {
         *("heights", "scene", "kernel", "pressures", "penetrations", "seeds"),
-        *("out", "resume", "fields", "executor", "keep_results", "progress", "check"),
+        *("out", "resume", "fields", "executor", "keep_results", "progress", "check", "strict"),
     }
 )
 
@@ -46,6 +47,8 @@ def sweep(
     cell: float | None = None,
     cell_y: float | None = None,
     spectrum: Path | None = None,
+    missing: Missing | None = None,
+    mask: Mask | None = None,
     waves: int | None = None,
     hurst: float | None = None,
     rms: float | None = None,
@@ -79,6 +82,7 @@ def sweep(
     keep_results: bool = False,
     progress: ProgressOption = False,
     check: bool = False,
+    strict: bool = False,
 ) -> Table:
     """Solve a list of loads on one surface, or on one for each seed, as ``rc sweep`` does.
 
@@ -114,6 +118,8 @@ def sweep(
         As for :func:`solve`, for each row. With an executor, True is a bar over rows.
     check : bool, default False
         Raise :class:`NotConvergedError` at the first row that does not converge, instead of warning at the end.
+    strict : bool, default False
+        Raise ``ValueError`` instead of warning of the surface with :class:`InputWarning`.
 
     Returns
     -------
@@ -135,7 +141,7 @@ def sweep(
     progress = _progress(progress, executor is not None)
     control, loads = _control(pressures, penetrations)
     places = _places(out, fields, resume, kernel)
-    problem = _anywhere(heights, keys, scene)
+    problem = _anywhere(heights, keys, scene, strict)
     planned = _plan(problem, kernel, (control, loads, _seeds(seeds, heights)), places)
     kept = planned.kept()
     if kept and keep_results:
@@ -227,7 +233,7 @@ class _Problem(NamedTuple):
     scene: str | None
 
 
-def _anywhere(heights: Any, keys: dict[str, Any], scene: Path | None) -> _Problem:
+def _anywhere(heights: Any, keys: dict[str, Any], scene: Path | None, strict: bool) -> _Problem:
     """Workers may have another working directory."""
     if "spectrum" in keys:
         keys["spectrum"] = os.path.abspath(keys["spectrum"])
@@ -235,15 +241,16 @@ def _anywhere(heights: Any, keys: dict[str, Any], scene: Path | None) -> _Proble
     if isinstance(heights, (str, os.PathLike)):
         heights = os.path.abspath(os.fspath(heights))
     elif heights is not None and not isinstance(heights, Surface):
-        keys, array, sides = surface_of(heights, keys)
-        heights = HeightMap(array, sides)
+        keys, array, sides, doubts = surface_of(heights, keys)
+        tell(doubts, strict, stacklevel=4)
+        heights = of_parts(array, sides)
     return _Problem(heights, keys, scene)
 
 
 def _plan(
     problem: _Problem, kernel: Kernel | None, lists: tuple[str, list[float], list[int] | None], places: _Places
 ) -> _core.Planned:
-    keys, array, sides = surface_of(problem.heights, problem.keys)
+    keys, array, sides, _ = surface_of(problem.heights, problem.keys)
     if isinstance(kernel, str):
         keys = {**keys, "kernel": kernel}
     control, loads, seeds = lists

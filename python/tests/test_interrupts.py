@@ -99,3 +99,26 @@ def test_a_second_interrupt_ends_the_wait_for_the_result():
             print(interrupt.result.status)
     """)
     assert said == "not waited for\nnot_converged\n"
+
+
+@pytest.mark.parametrize("method", ["uniform", "adaptive"])
+def test_the_result_of_an_interrupt_is_there_promptly(method):
+    said = run(f"""
+        def see(progress):
+            # In the middle of the finest level.
+            if progress.grid[0] == 2048 and progress.iteration == 2:
+                see.at = see.at or time.monotonic()
+                kill()
+        see.at = None
+        started = time.monotonic()
+        rc.solve(waves=64, grid=2048, pressure=4e5, method={method!r}, tolerance=1e-9)
+        whole = time.monotonic() - started
+        try:
+            rc.solve(waves=64, grid=2048, pressure=4e5, method={method!r}, tolerance=1e-9, progress=see)
+        except KeyboardInterrupt as interrupt:
+            result = interrupt.result
+            late = time.monotonic() - see.at
+            # What is left is a fresh application of the operator, not an iteration or a coarser level.
+            print(result.converged, late < 1.0 + 0.5 * whole)
+    """)
+    assert said == "False True\n"

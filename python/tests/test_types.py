@@ -14,12 +14,16 @@ from roughcontact import _core
 PACKAGE = pathlib.Path(rc.__file__).parent
 
 #: Keys of a scene that calls have in another way: the argument `heights`, and what concerns standard output.
-IN_ANOTHER_WAY = {"heights", "out", "quiet", "json"}
+IN_ANOTHER_WAY = {"heights", "out", "quiet", "json", "strict"}
+
+#: Keys for files.
+OF_FILES = {"missing", "mask"}
 
 
 def test_solve_has_every_key_of_a_scene():
     keywords = set(inspect.signature(rc.solve).parameters)
-    assert keywords - {"scene", "progress", "check", "heights"} == set(_core.known_keys()) - IN_ANOTHER_WAY
+    own = {"scene", "progress", "check", "heights", "strict"}
+    assert keywords - own == (set(_core.known_keys()) | OF_FILES) - IN_ANOTHER_WAY
 
 
 def test_sweep_and_surface_have_the_keywords_of_solve():

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
 use rc_figures::repository;
@@ -11,7 +12,7 @@ use crate::process::Program;
 /// Builds, installs and tests the Python package in an environment in target/python.
 ///
 /// It runs tests, type checks, examples and notebooks. It needs Python 3.11 or newer: `python3`, or the one in the
-/// variable PYTHON.
+/// variable PYTHON. Without it the command says so and succeeds (Debian: python3-venv).
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Builds the documentation into target/python/site instead, with the notebooks and the guide
@@ -25,7 +26,16 @@ pub(crate) struct Args {
 /// Packages with versions for tests, type checks, notebooks and documentation.
 const REQUIREMENTS: &str = "python/requirements-test.txt";
 
+#[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
 pub(crate) fn run(args: &Args) -> Result<()> {
+    let python = chosen_python();
+    if !is_usable(&python) {
+        eprintln!(
+            "python: skipped, {python} is no Python from 3.11 on with venv (Debian: apt-get install python3-venv; another \
+             one is named in the variable PYTHON)"
+        );
+        return Ok(());
+    }
     let environment = Environment::new()?;
     environment.install_package()?;
     if args.docs {
@@ -34,6 +44,19 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     environment.python(&["-m", "mypy", "--strict", "python/examples", "python/roughcontact"]).run()?;
     let words: Vec<&str> = ["-m", "pytest", "-q"].into_iter().chain(args.pytest.iter().map(String::as_str)).collect();
     environment.python(&words).run()
+}
+
+/// The Python that makes environments.
+fn chosen_python() -> String {
+    std::env::var("PYTHON").unwrap_or_else(|_| "python3".into())
+}
+
+/// Whether this program is a Python that can make the environment.
+fn is_usable(python: &str) -> bool {
+    let check = "import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))";
+    let mut call = Command::new(python);
+    call.args(["-c", check]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    call.status().is_ok_and(|status| status.success())
 }
 
 /// A virtual environment in the folder of build results.
@@ -51,7 +74,7 @@ impl Environment {
         if fs::read_to_string(&mark).is_ok_and(|installed| installed == wanted) {
             return Ok(environment);
         }
-        let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
+        let python = chosen_python();
         let folder = path_text(&environment.folder)?;
         Program::new(python, &["-m", "venv", "--clear", folder]).run()?;
         environment.python(&["-m", "pip", "install", "--quiet", "--requirement", REQUIREMENTS]).run()?;
@@ -138,4 +161,15 @@ fn copy_files(from: &Path, to: &Path) -> Result<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_that_is_not_there_or_no_python_is_not_usable() {
+        assert!(!is_usable("/nonexistent"));
+        assert!(!is_usable("cargo"), "it knows no -c");
+    }
 }

@@ -74,7 +74,7 @@ impl std::fmt::Debug for Snapshot<'_> {
 
 /// Receives [`Event`]s.
 ///
-/// The solver calls the methods between iterations, from the solving thread. They should return quickly. If several
+/// The solver calls the methods between iterations and within them, from the solving thread. They should return quickly. If several
 /// ranks (processes or threads) share a solve, each rank calls its observer. All ranks stop if the observer of any rank
 /// wants to stop.
 pub trait Observer: Sync {
@@ -86,9 +86,11 @@ pub trait Observer: Sync {
     /// The result of the solve does not depend on this method.
     fn look(&self, _pressure: &Snapshot<'_>) {}
 
-    /// Returns whether to stop the solve now. The solver calls this between iterations.
+    /// Returns whether to stop the solve now.
     ///
-    /// If it returns true, the present state is returned as not converged.
+    /// The solver calls this between the applications of L, of which an iteration takes a few. Once it has returned
+    /// true, it must not return false again. The solver then certifies the present state, with a fresh application of L
+    /// on the finest grid, and returns it as not converged.
     fn should_stop(&self) -> bool {
         false
     }

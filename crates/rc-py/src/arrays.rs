@@ -3,9 +3,10 @@
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 use rc_core::{Field, Grid};
-use rc_heights::{HeightMap, Unit};
+use rc_heights::{HeightMap, LengthUnit, Unit};
 
-use crate::errors::bad_input;
+use crate::errors::{bad_input, raised_by_points};
+use crate::running::on_threads;
 
 /// Heights (m) of shape (ny, nx), row by row in memory.
 ///
@@ -26,6 +27,27 @@ pub(crate) fn grid_of(heights: &Heights<'_>) -> PyResult<Grid> {
 /// The values of an array, without a copy.
 pub(crate) fn values_of<'a>(heights: &'a Heights<'_>) -> PyResult<&'a [f64]> {
     heights.as_slice().map_err(|_| bad_input("heights: the array must be contiguous, row by row"))
+}
+
+/// The map of points x, y and height (m), one in each row: its heights, and its sides along x and y (m).
+#[pyfunction]
+pub(crate) fn points<'py>(py: Python<'py>, array: Heights<'py>) -> PyResult<(Bound<'py, PyArray2<f64>>, [f64; 2])> {
+    let (rows, rest) = values_of(&array)?.as_chunks::<3>();
+    if array.shape()[1] != 3 || !rest.is_empty() {
+        return Err(bad_input("points: must be an array of shape (n, 3)"));
+    }
+    let rows = rows.to_vec();
+    let map = on_threads(py, 0, move || rc_heights::of_points(&rows))?.map_err(|cause| raised_by_points(&cause))?;
+    let sides = map.sides.ok_or_else(|| bad_input("points: the points have no sides"))?;
+    Ok((array_of(py, map.heights.grid(), map.heights.into_values())?, sides))
+}
+
+/// The metres of a unit of length by any name that files have; `None` if the name is of no length.
+#[pyfunction]
+pub(crate) fn metres(name: &str) -> Option<f64> {
+    // In files, `A` is an ampere.
+    let unit: Option<LengthUnit> = name.parse().ok().filter(|_| name.trim() != "A");
+    unit.map(LengthUnit::metres)
 }
 
 /// The heights as a map in metres.

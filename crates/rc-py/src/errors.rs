@@ -22,6 +22,12 @@ pub(crate) fn bad_input(message: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(in_keywords(&message.to_string()))
 }
 
+/// The exception for points that are no map. Advice about files is of no use to them.
+pub(crate) fn raised_by_points(error: &rc_heights::FormatError) -> PyErr {
+    let message = error.to_string();
+    bad_input(message.split_once("; layout = ").map_or(message.as_str(), |(said, _)| said))
+}
+
 /// The exception for a key with a wrong value.
 ///
 /// The value has the wrong type, or is not among the allowed ones.

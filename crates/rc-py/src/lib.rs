@@ -41,6 +41,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(solve::solve, module)?)?;
     module.add_class::<sweep::Planned>()?;
     module.add_function(wrap_pyfunction!(sweep::plan_sweep, module)?)?;
+    module.add_function(wrap_pyfunction!(arrays::points, module)?)?;
+    module.add_function(wrap_pyfunction!(arrays::metres, module)?)?;
     module.add_function(wrap_pyfunction!(maps::channels, module)?)?;
     module.add_function(wrap_pyfunction!(maps::read, module)?)?;
     module.add_function(wrap_pyfunction!(maps::surface, module)?)?;

@@ -72,6 +72,7 @@ pub(crate) use lines::{data_lines, number, words};
 pub use mask::{Mask, MaskError};
 pub use mat::{MatArray, mat_arrays};
 pub(crate) use netcdf::hdf5_table;
+pub use points::of_points;
 
 use self::channel::{Channels, chosen, named, only};
 use self::heading::Heading;

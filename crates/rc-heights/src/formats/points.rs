@@ -3,7 +3,7 @@
 use super::cloud::on_grid;
 use super::layout::Layout;
 use super::{Format, limit};
-use crate::{FormatError, HeightMap};
+use crate::{FormatError, HeightMap, Unit};
 
 /// Number of rows above which two or three columns are not taken as a map.
 ///
@@ -41,10 +41,7 @@ impl Kind {
                 Err(FormatError::Unsupported { format, what, cure })
             }
             (3, None) if longer > FEW => Ok(if columns == 3 { Self::Rows } else { Self::Columns }),
-            (..3, None) if longer > FEW => {
-                let cure = "; --layout matrix reads it as a map";
-                Err(FormatError::profile_in_array(&format!("{rows} x {columns}"), cure))
-            }
+            (..3, None) if longer > FEW => Err(FormatError::profile_in_array(&format!("{rows} x {columns}"), "")),
             _ => Ok(Self::Map),
         }
     }
@@ -77,6 +74,18 @@ pub(super) fn map_of(points: Vec<[f64; 3]>, [rows, columns]: [usize; 2]) -> Resu
         return Err(refused(FormatError::Irregular(message)));
     }
     on_grid(&points).map_err(refused)
+}
+
+/// The map of points x, y and height of a program, which may have any order. Points may be missing.
+///
+/// Coordinates and heights are numbers of an array, so they are in metres unless the user gives a unit.
+///
+/// # Errors
+/// [`FormatError::Irregular`] when the points are not on a regular grid, [`FormatError::Profile`] when they are on a
+/// line, and [`FormatError::Grid`] when the grid is too large.
+pub fn of_points(points: &[[f64; 3]]) -> Result<HeightMap, FormatError> {
+    let map = on_grid(points)?;
+    Ok(HeightMap { height_unit: Unit::Array, side_unit: Unit::Array, ..map })
 }
 
 /// Refuses more points than fit into `max_bytes`.

@@ -72,7 +72,9 @@ pub(super) fn base_sides(
     let even = if is_surface { halves.find_map(halved) } else { halves.next().and_then(halved) };
     let others = halves.find_map(halved);
     let [nx, ny] = finest;
-    let error = AdaptiveError::Grid { nx, ny, smallest: 2 * least };
+    // Half the elements must hold the waves and at least one tile.
+    let smallest = 2 * (2 * waves.unwrap_or(0) + 1).max(TILE);
+    let error = AdaptiveError::Grid { nx, ny, smallest };
     let mut all = std::iter::successors(Some(n), |n| Some(n / 2)).take_while(|&n| n > 1 && long >= SMALLEST_BASE);
     let uneven = all.find_map(|n| uneven_sides(source.grid(), n));
     // Below uneven grids a surface is sampled on its whole grid, like a map.
@@ -200,6 +202,31 @@ mod tests {
             assert_eq!(base(side, waves).ok(), Some([expected; 2]), "{side}, {waves} waves");
         }
         assert!(matches!(base(60, 20), Err(AdaptiveError::Grid { .. })));
+    }
+
+    /// What the message says of small grids is true: none below the number that it names is solved, and multiples of 16
+    /// are from there on.
+    #[test]
+    fn grids_that_are_too_small_are_those_that_the_message_names() {
+        for waves in [1, 2, 3, 5, 8, 16, 24, 31, 40, 64] {
+            let base = |side: usize| {
+                base_sides(&Waves(waves).on(Grid::square(side).expect("a grid")), None, Boundary::Periodic)
+            };
+            let Err(AdaptiveError::Grid { smallest, .. }) = base(1) else { panic!("{waves} waves on one element") };
+            for side in 1..400 {
+                let text = base(side).err().map(|error| error.to_string());
+                let names_the_smallest = |text: &String| text.contains(&format!("at least {smallest} elements"));
+                assert_eq!(
+                    text.as_ref().is_some_and(names_the_smallest),
+                    side < smallest,
+                    "{waves} waves, {side}: {text:?}"
+                );
+                assert!(
+                    side < smallest || text.is_none() || !side.is_multiple_of(16),
+                    "{waves} waves, {side}: {text:?}"
+                );
+            }
+        }
     }
 
     #[test]

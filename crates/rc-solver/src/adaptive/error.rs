@@ -23,14 +23,14 @@ pub enum AdaptiveError {
         /// Ratio of the sides of an element, y to x.
         ratio: f64,
     },
-    /// The grid is too small for a base grid below it.
+    /// The grid has no base grid below it.
     #[error("{}", no_base_grid([*nx, *ny], *smallest))]
     Grid {
         /// Elements along x.
         nx: usize,
         /// Elements along y.
         ny: usize,
-        /// Minimum number of elements along the longer side.
+        /// Number of elements along the longer side below which no grid has one.
         smallest: usize,
     },
     /// The base grid cannot hold the surface's spectrum, or does not divide the finest grid.
@@ -117,7 +117,7 @@ fn no_base_grid([nx, ny]: [usize; 2], smallest: usize) -> String {
         )
     } else {
         format!(
-            "the adaptive method has no base grid of nearly square elements for {nx} x {ny}; other numbers of elements may have one"
+            "the adaptive method has no base grid of nearly square elements for {nx} x {ny}; other numbers of elements may have one, and multiples of 16 do"
         )
     }
 }

@@ -66,6 +66,10 @@ pub(super) fn solve_finest_level(
     observer: &dyn Observer,
 ) -> (SolvedLevel, PressureScale) {
     let mut level = FinestLevel::new(setup, grid, start, contact_gap);
+    if observer.should_stop() {
+        let evaluation = level.evaluate_whole_cell();
+        return level.into_solved(evaluation);
+    }
     let mut evaluation = level.evaluate_candidates();
     for round in 0..MAX_ROUNDS {
         let before = level.info.iterations;
@@ -182,18 +186,24 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let max_iterations = setup.params.max_iterations;
         let goal = |factor: f64| Goal { tolerance: factor * tolerance, max_iterations, certify: None };
         let observer = DescentObserver { observer, mesh: &near.elements };
-        descent.run(goal(FIRST_TOLERANCE), &observer);
-        // Without a step, the gap is as fresh as before, and comes from a better operator.
-        if descent.info().iterations > 0 || setup.better.is_none() {
-            descent.refresh();
-        }
-        let last = descent.run(goal(LAST_TOLERANCE), &observer);
+        let first = descent.run(goal(FIRST_TOLERANCE), &observer);
+        let last = if observer.observer.should_stop() {
+            // The gap is evaluated next in any case.
+            first
+        } else {
+            // Without a step, the gap is as fresh as before, and comes from a better operator.
+            if descent.info().iterations > 0 || setup.better.is_none() {
+                descent.refresh();
+            }
+            descent.run(goal(LAST_TOLERANCE), &observer)
+        };
+        let reached = last.converged && !observer.observer.should_stop();
         add_work(&mut info, &descent.info());
         let pressure = descent.into_pressure();
         candidates.heights =
             element_heights(setup.heights, &candidates.elements, Some((&near.elements, &near.heights)));
         let current = MeshStart { elements: near.elements, pressure };
-        (Self { setup, tables, candidates, current, info }, last.converged)
+        (Self { setup, tables, candidates, current, info }, reached)
     }
 
     /// The gap on all candidates, and the operator that computed it.

@@ -218,7 +218,8 @@ impl AdaptiveSolution {
 
     /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ, to 1e-3 relative.
     ///
-    /// It is infinite in full contact. It takes a few applications of L.
+    /// It is infinite in full contact, and to a few percent if the solve did not converge. It takes a few applications
+    /// of L.
     #[must_use]
     pub(super) fn contact_stiffness(&self, kernels: &Kernels) -> f64 {
         let pressure = elastic_part(&self.pressure, self.hardness);
@@ -234,7 +235,7 @@ impl AdaptiveSolution {
             let mut preconditioner = kernels.preconditioner().tables(self.finest);
             let (hierarchy, tables) = self.operator_of(kernels.quick());
             let mut corrections = TileCorrections::new(hierarchy, &tables, &mut preconditioner);
-            stiffness_pressure(&pressure, n, &mut corrections)
+            stiffness_pressure(&pressure, n, &mut corrections, self.converged)
         };
         let (hierarchy, tables) = self.operator_of(kernels.response());
         stiffness_under(&x, n, &mut TileResponse::new(hierarchy, &tables))

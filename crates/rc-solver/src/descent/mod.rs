@@ -32,6 +32,7 @@ mod safe_round;
 mod shares;
 mod start;
 mod state;
+mod stop;
 mod sums;
 mod uniform;
 
@@ -49,4 +50,4 @@ pub(crate) use rows::ElementValues;
 pub(crate) use run::{DescentObserver, Goal};
 pub(crate) use state::{Descent, Start};
 pub(crate) use sums::GapSums;
-pub(crate) use uniform::{SymbolOperator, UniformCorrections, uniform_operators};
+pub(crate) use uniform::{SymbolOperator, UniformCorrections, certifying_operators, uniform_operators};

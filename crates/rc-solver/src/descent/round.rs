@@ -7,8 +7,9 @@ use super::operators::{read_blocks, write_blocks};
 use super::rows::{self, ElementValues, Gradient};
 use super::shares::{Load, Shares, Squares};
 use super::state::Descent;
+use super::stop::{Stopped, unless_stopped};
 use super::sums::GapSums;
-use rc_core::Boundary;
+use rc_core::{Boundary, Observer};
 
 use crate::Control;
 use crate::parallel;
@@ -33,7 +34,10 @@ const ALONE: f64 = 0.891;
 
 impl Descent<'_> {
     /// Takes this number of steps, clips tensile pressures and restores the load.
-    pub(super) fn round(&mut self, steps: usize, sums: &GapSums) -> GapSums {
+    ///
+    /// # Errors
+    /// [`Stopped`] when the observer wants to stop.
+    pub(super) fn round(&mut self, steps: usize, sums: &GapSums, observer: &dyn Observer) -> Result<GapSums, Stopped> {
         // Without a start, contact is at first too large at any load. Of operators of the caller nothing is known. Free
         // borders bend the gap of a start over long distances, so whole regions would join and press.
         let is_periodic = self.boundary() == Boundary::Periodic;
@@ -49,17 +53,17 @@ impl Descent<'_> {
             set = self.begin_round();
         }
         if set.n == 0.0 {
-            return *sums;
+            return Ok(*sums);
         }
         for step in 1..=steps {
-            let length = self.step_length(&set);
+            let length = self.step_length(&set, observer)?;
             set.direction_mean = 0.0;
             if step == steps {
-                return self.project(length, is_heavy);
+                return self.project(length, is_heavy, observer);
             }
             self.take_step(length);
         }
-        *sums
+        Ok(*sums)
     }
 
     /// Writes the residual of the active elements.
@@ -84,13 +88,15 @@ impl Descent<'_> {
     }
 
     /// Moves on to the next direction, and returns the length of the step along it.
-    fn step_length(&mut self, set: &ActiveSet) -> f64 {
+    fn step_length(&mut self, set: &ActiveSet, observer: &dyn Observer) -> Result<f64, Stopped> {
+        unless_stopped(observer)?;
         let corrections = &mut *self.operators.corrections;
         self.info.preconditioner_applications += 1;
         let sums = self.directions.precondition(corrections, &self.layout);
         let mean = if set.fixed_mean { sums.preconditioned / set.n } else { 0.0 };
         let beta = ((sums.with_displacement - mean * sums.displacement) / self.curvature).max(0.0);
         let shift = if set.fixed_mean { mean - beta * set.direction_mean } else { 0.0 };
+        unless_stopped(observer)?;
         self.info.operator_applications += 1;
         let slope = Slope::Gap { gap: &self.gap, zero_gap: self.zero_gap };
         let sums = self.directions.advance(corrections, &self.layout, [beta, shift], &slope);
@@ -102,7 +108,7 @@ impl Descent<'_> {
         if let Control::MeanPressure(_) = self.problem.control {
             self.zero_gap += length * sums.displacement / set.n;
         }
-        length
+        Ok(length)
     }
 
     /// Takes a step and writes the residual on the same elements.
@@ -118,12 +124,13 @@ impl Descent<'_> {
     /// Takes a step, clips tensile pressures, and restores the load or the penetration.
     ///
     /// Each part of the load is restored where it was.
-    fn project(&mut self, length: f64, is_heavy: bool) -> GapSums {
+    fn project(&mut self, length: f64, is_heavy: bool, observer: &dyn Observer) -> Result<GapSums, Stopped> {
         let gradient = self.gradient();
         let (n_clipped, loads) = self.clip(length, is_heavy, &gradient);
         let shares = Shares::new(self.squares(), &loads);
         if self.is_limited(&shares) {
-            return self.project_limited(n_clipped, (&loads, &shares), &gradient);
+            unless_stopped(observer)?;
+            return Ok(self.project_limited(n_clipped, (&loads, &shares), &gradient));
         }
         let wanted = match self.problem.control {
             Control::MeanPressure(mean) => Some(mean * self.n_cell()),
@@ -136,7 +143,7 @@ impl Descent<'_> {
         if n_clipped == 0 {
             let sums = self.rescale(scale(loads.iter().map(|load| load.clipped).sum()));
             let sums = self.limited(sums);
-            return self.meet_penetration(sums);
+            return Ok(self.meet_penetration(sums));
         }
         // Loads are only moved between squares. Scaling, which is exact, then sets the load of the cell.
         let (len, offset, range) = (self.layout.len(), self.problem.offset(), self.problem.unit());
@@ -151,6 +158,7 @@ impl Descent<'_> {
             [sum]
         });
         let [pressure] = self.layout.total(sums);
+        unless_stopped(observer)?;
         self.info.operator_applications += 1;
         self.operators.corrections.apply();
         let (empty, scale) = (GapSums::empty(self.pressed, self.problem.hardness), scale(pressure));
@@ -161,7 +169,7 @@ impl Descent<'_> {
         let sums = GapSums::total(&self.layout, sums);
         self.pressed = sums.next_pressed();
         let sums = self.limited(sums);
-        self.meet_penetration(sums)
+        Ok(self.meet_penetration(sums))
     }
 
     /// Takes a step and clips tensile pressures.

@@ -96,16 +96,50 @@ impl Descent<'_> {
             if history.rounds == PATIENCE {
                 self.curvature = f64::INFINITY;
             }
-            let is_stuck = self.info.iterations >= goal.max_iterations || history.rounds > 3 * PATIENCE;
-            if is_stuck || watch.observer.should_stop() {
-                let sums = self.refresh();
-                let mut outcome = self.outcome(&sums, false);
-                // The goal may be smaller than the bound to certify.
-                outcome.converged = goal.certify.is_some_and(|bound| outcome.certificate.meets(bound));
-                return outcome;
+            if self.info.iterations >= goal.max_iterations || history.rounds > 3 * PATIENCE {
+                sums = self.refresh();
+                return self.unfinished(goal, &sums);
             }
-            sums = if history.rounds > HESITATION { self.safe_round(&sums) } else { self.round(history.steps, &sums) };
+            if watch.observer.should_stop() {
+                return self.stopped(goal, sums);
+            }
+            let next = if history.rounds > HESITATION {
+                self.safe_round(&sums, watch.observer)
+            } else {
+                self.round(history.steps, &sums, watch.observer)
+            };
+            let Ok(next) = next else {
+                self.admit();
+                return self.stopped(goal, sums);
+            };
+            sums = next;
         }
+    }
+
+    /// The outcome of the start, without a step, for a solve that was stopped before.
+    pub(crate) fn certify_start(&mut self, goal: Goal, watch: &DescentObserver<'_>) -> Outcome {
+        let sums = self.start();
+        self.tell(watch, [sums.error(self.problem, self.n_cell()), goal.tolerance], &sums);
+        self.unfinished(goal, &sums)
+    }
+
+    /// The outcome when the observer wants to stop.
+    ///
+    /// `sums` are those of the last finished round. The gap is computed afresh only for a certificate, and only if it
+    /// is not fresh already.
+    fn stopped(&mut self, goal: Goal, mut sums: GapSums) -> Outcome {
+        let is_fresh = self.info.iterations == 0 && !self.has_gap;
+        if goal.certify.is_some() && !is_fresh {
+            sums = self.refresh();
+        }
+        self.unfinished(goal, &sums)
+    }
+
+    fn unfinished(&self, goal: Goal, sums: &GapSums) -> Outcome {
+        let mut outcome = self.outcome(sums, false);
+        // The goal may be smaller than the bound to certify.
+        outcome.converged = goal.certify.is_some_and(|bound| outcome.certificate.meets(bound));
+        outcome
     }
 
     /// Computes the gap from a fresh application of L, in double precision.

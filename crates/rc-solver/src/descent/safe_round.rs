@@ -3,7 +3,10 @@
 //! Clipping and restored load may undo what a step has gained, for instance in long cells, where a small change of the
 //! load of one place displaces everything. Such rounds repeat each other endlessly.
 
+use rc_core::Observer;
+
 use super::state::Descent;
+use super::stop::Stopped;
 use super::sums::GapSums;
 use crate::parallel;
 
@@ -20,13 +23,19 @@ impl Descent<'_> {
     /// follow from the two gaps, and the minimum needs no application of L.
     ///
     /// *Memory*: a copy of pressure and gap.
-    pub(super) fn safe_round(&mut self, sums: &GapSums) -> GapSums {
+    ///
+    /// # Errors
+    /// [`Stopped`] when the observer wants to stop. Pressure and gap are then those from before the round.
+    pub(super) fn safe_round(&mut self, sums: &GapSums, observer: &dyn Observer) -> Result<GapSums, Stopped> {
         let (pressure, gap) = (self.pressure.clone(), self.gap.clone());
         let zero_gap = self.zero_gap;
-        let sums = self.round(1, sums);
+        let Ok(sums) = self.round(1, sums, observer) else {
+            (self.pressure, self.gap) = (pressure, gap);
+            return Err(Stopped);
+        };
         let part = self.best_part(&pressure, &gap, zero_gap);
         if part >= 1.0 {
-            return sums;
+            return Ok(sums);
         }
         if part <= 0.0 {
             self.step_factor *= SHORTER;
@@ -43,7 +52,7 @@ impl Descent<'_> {
         self.curvature = f64::INFINITY;
         self.is_chosen = false;
         let sums = self.rescale(1.0);
-        self.meet_penetration(sums)
+        Ok(self.meet_penetration(sums))
     }
 
     /// The part of a round that lowers the energy most, from 0 to 1.

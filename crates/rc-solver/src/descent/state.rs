@@ -59,6 +59,17 @@ impl<'a> Descent<'a> {
         problem: &'a Problem,
         start: Start,
     ) -> Self {
+        let directions = ConjugateDirections::new(heights.len());
+        Self::with_directions(heights, grid, operators, problem, (start, directions))
+    }
+
+    fn with_directions(
+        heights: &'a [f64],
+        grid: Grid,
+        operators: LevelOperators<'a>,
+        problem: &'a Problem,
+        (start, directions): (Start, ConjugateDirections),
+    ) -> Self {
         let n = heights.len();
         let layout = operators.corrections.layout();
         debug_assert_eq!(layout.len(), operators.fresh.layout().len());
@@ -75,7 +86,7 @@ impl<'a> Descent<'a> {
             heights,
             pressure,
             gap,
-            directions: ConjugateDirections::new(n),
+            directions,
             curvature: f64::INFINITY,
             step_factor: 1.0,
             is_chosen: false,
@@ -85,6 +96,17 @@ impl<'a> Descent<'a> {
             has_gap,
             info: LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 },
         }
+    }
+
+    /// A descent that takes no step, for [`Descent::certify_start`]. It has no memory for directions.
+    pub(crate) fn without_steps(
+        heights: &'a [f64],
+        grid: Grid,
+        operators: LevelOperators<'a>,
+        problem: &'a Problem,
+        start: Start,
+    ) -> Self {
+        Self::with_directions(heights, grid, operators, problem, (start, ConjugateDirections::new(0)))
     }
 
     pub(crate) fn grid(&self) -> Grid {

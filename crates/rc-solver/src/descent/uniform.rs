@@ -19,6 +19,37 @@ pub(crate) fn uniform_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperato
     }
 }
 
+/// The operator L of `kernel` on `grid` for a certificate only, without corrections.
+pub(crate) fn certifying_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
+    LevelOperators {
+        corrections: Box::new(NoCorrections(layout(grid))),
+        fresh: Box::new(SymbolOperator::of(GridResponse::of(grid, kernel))),
+    }
+}
+
+/// No corrections, for a solve that was stopped: it takes no step, so only the layout is asked for.
+struct NoCorrections(BlockLayout);
+
+impl BlockOperator<f32> for NoCorrections {
+    fn layout(&self) -> BlockLayout {
+        self.0.clone()
+    }
+
+    fn write(&mut self, _write: &(dyn Fn(usize, &mut [f32]) + Sync)) {}
+
+    fn apply(&mut self) {}
+
+    fn read(&self, _read: &(dyn Fn(usize, &[f32]) + Sync)) {}
+}
+
+impl PreconditionedOperator for NoCorrections {
+    fn set_active(&mut self, _active: &[bool]) {}
+
+    fn precondition(&mut self, _active: &[bool], _values: &mut [f32]) {}
+
+    fn set_mean(&mut self, _eigenvalue: f64) {}
+}
+
 /// L and its approximate inverse, for corrections.
 pub(crate) struct UniformCorrections {
     /// Convolution of displacements. On periodic cells it serves the approximate inverse too.

@@ -6,7 +6,7 @@ use rc_core::{Boundary, EdgeBias, Field, Grid, Operator};
 
 use super::kernel::OwnedKernel;
 use crate::operator::{UniformOperator, stiffness_with_operator};
-use crate::solution::GridSolution;
+use crate::solution::{GridSolution, Status};
 use crate::stiffness::contact_stiffness;
 use crate::support::Support;
 
@@ -60,7 +60,10 @@ impl Response<'_> {
     /// Contact stiffness dσ0/dΔ of `solution`, in E*/λ.
     pub(super) fn stiffness(&self, solution: &GridSolution, hardness: f64) -> f64 {
         match self {
-            Self::Kernel(kernel) => contact_stiffness(&solution.pressure, hardness, kernel.get()),
+            Self::Kernel(kernel) => {
+                let converged = solution.status != Status::NotConverged;
+                contact_stiffness(&solution.pressure, hardness, kernel.get(), converged)
+            }
             Self::Operator(operator) => stiffness_with_operator(&solution.pressure, *operator),
             Self::Outlived { stiffness, .. } => *stiffness,
         }

@@ -8,7 +8,7 @@ use rc_core::{Event, Field, Kernel, Observer};
 use super::levels::nest_without_pits;
 use super::prolongation::prolong;
 use crate::IterationParams;
-use crate::descent::{Descent, DescentObserver, Goal, Outcome, Start, uniform_operators};
+use crate::descent::{Descent, DescentObserver, Goal, Outcome, Start, certifying_operators, uniform_operators};
 use crate::problem::Problem;
 use crate::solution::{LevelInfo, LevelValues};
 
@@ -54,13 +54,19 @@ impl<'a> NestedGrids<'a> {
         let n_levels = coarser.len() + 1 + self.n_above;
         let finer = coarser.iter().rev().skip(1).chain([heights]).map(Field::grid);
         let (mut levels, mut start, mut values) = (Vec::with_capacity(n_levels), Start::Nothing, None);
-        for (heights, finer) in coarser.iter().rev().zip(finer) {
-            let (descent, outcome) = self.solve_level(heights, start, n_levels, &mut levels);
-            let is_half = [heights.grid().nx() * 2, heights.grid().ny() * 2] == [finer.nx(), finer.ny()];
+        for (level, (coarse, finer)) in coarser.iter().rev().zip(finer).enumerate() {
+            let (descent, outcome) = self.solve_level(coarse, start, [level, n_levels], &mut levels);
+            if self.observer.should_stop() {
+                // Levels between would only improve the start.
+                start = Start::Pressure(prolong(&descent, heights.grid()));
+                values = None;
+                break;
+            }
+            let is_half = [coarse.grid().nx() * 2, coarse.grid().ny() * 2] == [finer.nx(), finer.ny()];
             values = self.values(&descent, &outcome, n_levels - levels.len()).filter(|_| is_half);
             start = Start::Pressure(prolong(&descent, finer));
         }
-        let (descent, outcome) = self.solve_level(heights, start, n_levels, &mut levels);
+        let (descent, outcome) = self.solve_level(heights, start, [coarser.len(), n_levels], &mut levels);
         let coarser = if self.n_above == 0 { values } else { self.values(&descent, &outcome, self.n_above) };
         FinestGrid { descent, outcome, levels, coarser }
     }
@@ -75,18 +81,18 @@ impl<'a> NestedGrids<'a> {
         })
     }
 
-    /// Solves the next of `n_levels` levels.
+    /// Solves a level, whose number is below `n_levels`.
     fn solve_level<'h>(
         &self,
         heights: &'h Field,
         start: Start,
-        n_levels: usize,
+        [level, n_levels]: [usize; 2],
         levels: &mut Vec<LevelInfo>,
     ) -> (Descent<'h>, Outcome)
     where
         'a: 'h,
     {
-        let (level, grid) = (levels.len(), heights.grid());
+        let grid = heights.grid();
         self.observer.notify(&Event::Level { grid, level, n_levels });
         let wanted = self.params.bound.aim();
         let above = n_levels - 1 - level;
@@ -94,14 +100,23 @@ impl<'a> NestedGrids<'a> {
             0 => wanted,
             _ => self.problem.measure.coarse_tolerance(above - 1).max(wanted),
         };
-        let operators = uniform_operators(grid, self.kernel);
-        let mut descent = Descent::new(heights.values(), grid, operators, self.problem, start);
         let goal = Goal {
             tolerance,
             max_iterations: self.params.max_iterations,
             certify: (above == 0).then_some(self.params.bound),
         };
-        let outcome = descent.run(goal, &DescentObserver { observer: self.observer, mesh: &grid });
+        let (values, watch) = (heights.values(), DescentObserver { observer: self.observer, mesh: &grid });
+        let (descent, outcome) = if above == 0 && !levels.is_empty() && self.observer.should_stop() {
+            let operators = certifying_operators(grid, self.kernel);
+            let mut descent = Descent::without_steps(values, grid, operators, self.problem, start);
+            let outcome = descent.certify_start(goal, &watch);
+            (descent, outcome)
+        } else {
+            let operators = uniform_operators(grid, self.kernel);
+            let mut descent = Descent::new(values, grid, operators, self.problem, start);
+            let outcome = descent.run(goal, &watch);
+            (descent, outcome)
+        };
         levels.push(descent.info());
         (descent, outcome)
     }

@@ -1,0 +1,38 @@
+//! Rounds that end early because the observer wants to stop.
+//!
+//! A round takes several applications of L, which are seconds each on large grids. The observer is therefore asked
+//! before each of them.
+
+use rc_core::Observer;
+
+use super::gap::scale_to_load;
+use super::state::Descent;
+use crate::parallel;
+
+/// The observer wants to stop, and the round has ended early.
+///
+/// The pressure may have taken a step that was not projected. [`Descent::admit`] makes it a start again.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stopped;
+
+/// Ends a round if the observer wants to stop.
+pub(super) fn unless_stopped(observer: &dyn Observer) -> Result<(), Stopped> {
+    if observer.should_stop() { Err(Stopped) } else { Ok(()) }
+}
+
+impl Descent<'_> {
+    /// Makes the pressure of an unfinished round admissible: no tension, nothing above the hardness, the whole load.
+    ///
+    /// The gap does not follow.
+    pub(super) fn admit(&mut self) {
+        if self.info.iterations == 0 {
+            return;
+        }
+        let hardness = self.problem.hardness;
+        parallel::update(&mut self.pressure, |p| *p = p.clamp(0.0, hardness));
+        // With a hardness, the fresh gap restores the load.
+        if hardness.is_infinite() {
+            scale_to_load(self.problem, self.n_cell(), &self.layout, &mut self.pressure);
+        }
+    }
+}
