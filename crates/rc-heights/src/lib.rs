@@ -48,6 +48,7 @@ mod note;
 mod parameters;
 pub mod spectrum;
 mod statistics;
+pub mod suspicion;
 mod treat;
 mod units;
 

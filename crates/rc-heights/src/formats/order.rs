@@ -17,7 +17,7 @@ impl Format {
     /// | `.gwy`, `.gsf` | top | the guide of Gwyddion, "Format of Gwyddion Files" |
     /// | `.sur` | top | Gwyddion (surffile) and SurfaceTopography show it so |
     /// | `.al3d`, `.plu`, `.plux`, `.vk4`, MetroPro | top | the same for alicona, sensofar, keyence, metropro |
-    /// | `.sdf`, `.x3p` | top | the standards do not say; the same for sdfile, opengps, and surfalize writes so |
+    /// | `.sdf`, `.x3p` | bottom | ISO 25178-71 and -72: the first profile has the lowest y (Gwyddion draws it at the top) |
     /// | Nanoscope | bottom | Gwyddion (nanoscope) and SurfaceTopography turn the image for their pictures |
     /// | Igor, Wyko | bottom | the same for igorfile, opdfile |
     /// | Surfer | bottom | help of Golden Software: the first row has the lowest y |
@@ -34,10 +34,10 @@ impl Format {
             | Self::Plu
             | Self::Plux
             | Self::Vk4
-            | Self::MetroPro
-            | Self::Sdf
-            | Self::X3p => true,
+            | Self::MetroPro => true,
             Self::Nanoscope
+            | Self::Sdf
+            | Self::X3p
             | Self::Ibw
             | Self::Opd
             | Self::Surfer

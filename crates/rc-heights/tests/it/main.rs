@@ -14,5 +14,6 @@ mod orders;
 mod parts;
 mod programs;
 mod robustness;
+mod suspicions;
 mod texts;
 mod treatments;

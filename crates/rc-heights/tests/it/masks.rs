@@ -85,6 +85,9 @@ fn i16s(values: std::ops::Range<i16>) -> Vec<u8> {
     values.flat_map(i16::to_le_bytes).collect()
 }
 
+/// Name, header, version, data, first line and number of lines, height (nm) of the first measured point.
+type Case<'a> = (&'a str, String, &'a str, &'a [u8], [usize; 2], f64);
+
 #[test]
 fn lines_that_a_stopped_scan_did_not_measure_are_missing() {
     let lines = |first: usize, n: usize| {
@@ -98,8 +101,7 @@ fn lines_that_a_stopped_scan_did_not_measure_are_missing() {
     };
     let (all, two, old, new) = (i16s(1..13), i16s(1..7), "0x05310001", "0x09400000");
     let four: Vec<u8> = (1..7_i32).flat_map(i32::to_le_bytes).collect();
-    // Name, header, version, data, first line and number of lines, height of the first measured point.
-    let cases: [(&str, String, &str, &[u8], [usize; 2], f64); 9] = [
+    let cases: [Case<'_>; 9] = [
         ("whole", y(0, 4), old, &all, [0, 4], 1.0),
         ("no keys", String::new(), old, &all, [0, 4], 1.0),
         ("valid lines of all", y(0, 2), old, &all, [0, 2], 1.0),

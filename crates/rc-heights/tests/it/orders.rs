@@ -1,6 +1,6 @@
 //! Tests of the order of rows: row 0 of a map is the lowest, whatever the order in the file is.
 
-use rc_heights::{Format, ReadNote, parse, read};
+use rc_heights::{Format, ReadNote, Unit, parse, read};
 
 use crate::build;
 use crate::files::{expected, folder};
@@ -29,7 +29,7 @@ fn every_program_gives_the_same_picture() {
     let expected = expected();
     for (name, top) in [
         ("gwyfile.gwy", true),
-        ("surfalize.x3p", true),
+        ("surfalize.x3p", false),
         ("surfalize.sur", true),
         ("gwyddion.txt", true),
         ("python.al3d", true),
@@ -39,7 +39,7 @@ fn every_program_gives_the_same_picture() {
         ("expected.asc.gz", false),
     ] {
         let map = read(&folder().join(name)).expect(name);
-        let scale = if name.ends_with(".gz") { 1.0 } else { 1e-9 };
+        let scale = if map.height_unit == Unit::Unnamed { 1.0 } else { 1e-9 };
         let row = if top { 7 } else { 0 };
         for ix in 0..12 {
             let (found, wanted) = (map.heights.at(ix, row), scale * expected.at(ix, 0));
@@ -51,7 +51,7 @@ fn every_program_gives_the_same_picture() {
 #[test]
 fn one_row_has_no_order() {
     let bytes = b"Gwyddion Simple Field 1.0\nXRes = 3\nYRes = 1\n\0\0\0\0".as_slice();
-    let bytes = [&bytes[..44 + 4 - 44 % 4], &[0; 12]].concat();
+    let bytes = [bytes, &[0; 12]].concat();
     let map = parse(&bytes, Format::Gsf).expect("a row");
     assert!(map.notes.is_empty(), "{:?}", map.notes);
 }
