@@ -38,9 +38,9 @@ pub(crate) enum Command {
     Surface(SurfaceArgs),
     /// Statistics of a surface or a result: rms, slopes, spectrum, distributions
     Inspect(InspectArgs),
-    /// Pictures of a result
+    /// Pictures of a result or a surface
     Plot(PlotArgs),
-    /// A result or a sweep as one HTML page that needs no network
+    /// A result, a surface or a sweep as one HTML page that needs no network
     Report(ReportArgs),
     /// A result as VTK for ParaView, PyVista and VisIt, or as Zarr for Python
     Export(ExportArgs),

@@ -41,6 +41,7 @@ pub mod surface;
 pub mod sweep;
 mod terminal;
 mod text;
+pub mod warnings;
 
 pub use files::{checkpoint, result};
 

@@ -1,4 +1,4 @@
-//! `rc plot`: pictures of a result.
+//! `rc plot`: pictures of a result or of a surface.
 
 use std::path::{Path, PathBuf};
 
@@ -9,6 +9,7 @@ use rc_core::Field;
 
 use crate::error::CliError;
 use crate::files::result::ResultFolder;
+use crate::inspect::{draw_surface, folder_of, is_scene};
 use crate::terminal;
 use rc_core::quantity::Scale;
 use rc_plot::{
@@ -27,8 +28,8 @@ const TEXT: f64 = 26.0;
 /// Arguments of `rc plot`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct PlotArgs {
-    /// Folder of a result
-    #[arg(value_name = "RESULT_DIR")]
+    /// Folder of a result or of a surface
+    #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
     /// Folder for the pictures [default: the result's own]
     #[arg(long, value_name = "DIR")]
@@ -43,6 +44,11 @@ pub(crate) struct PlotArgs {
 /// # Errors
 /// [`CliError`].
 pub(crate) fn run(args: &PlotArgs) -> Result<(), CliError> {
+    if is_scene(&args.folder) {
+        let target = args.out.as_deref().unwrap_or_else(|| folder_of(&args.folder));
+        let names = draw_surface(&args.folder, target)?;
+        return if args.quiet { Ok(()) } else { terminal::print_names(target, &names) };
+    }
     let result = ResultFolder::read_finite(&args.folder)?;
     let target = args.out.as_deref().unwrap_or(&args.folder);
     files::check_folder(target)?;

@@ -49,8 +49,15 @@ impl HeightMap {
     /// # Errors
     /// [`LengthUnitError`] when levels of grey have no scale, or when `scales` gives a unit that the file names.
     pub fn in_metres(mut self, scales: Scales) -> Result<Self, LengthUnitError> {
+        let scales = match scales {
+            Scales { height_unit: Some(_), height_scale: Some(_), .. } => return Err(LengthUnitError::TwoScales),
+            // Levels of grey and other quantities have a scale, but no unit.
+            Scales { height_unit: Some(unit), .. } if unnamed(self.height_unit) || self.height_unit == Unit::Metre => {
+                Scales { height_unit: None, height_scale: Some(unit.metres()), ..scales }
+            }
+            scales => scales,
+        };
         let unit = scales.unit.map_or(1.0, crate::LengthUnit::metres);
-        let unnamed = |is: Unit| matches!(is, Unit::Unnamed | Unit::Array);
         let unit_has_use = unnamed(self.height_unit) || self.sides.is_some() && unnamed(self.side_unit);
         match (self.height_unit, scales) {
             (Unit::GreyLevel, Scales { height_scale: None, .. }) => return Err(LengthUnitError::GreyLevels),
@@ -118,6 +125,11 @@ impl HeightMap {
         let (grid, sides) = (self.heights.grid(), self.sides.unwrap_or_else(|| self.sides_of_width(1.0)));
         [sides[0] / grid.nx() as f64, sides[1] / grid.ny() as f64]
     }
+}
+
+/// Whether a number is a length whose unit the user may give.
+fn unnamed(unit: Unit) -> bool {
+    matches!(unit, Unit::Unnamed | Unit::Array)
 }
 
 /// Multiplies values by `factor`. A factor of 1 does not change any bit.
@@ -193,7 +205,7 @@ mod tests {
 
     #[test]
     fn units_of_the_file_and_of_the_user_are_applied_once() {
-        let um = Scales { unit: Some(LengthUnit::Micrometre), height_scale: None };
+        let um = Scales { unit: Some(LengthUnit::Micrometre), ..Scales::default() };
         let nm = Scales { height_scale: Some(1e-9), ..um };
         let none = Scales::default();
         let cases = [

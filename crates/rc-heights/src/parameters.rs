@@ -3,7 +3,7 @@
 use rc_core::Field;
 use serde::Serialize;
 
-use crate::treat::rms_slope;
+use crate::treat::{mean, rms_slope};
 
 /// Height and hybrid parameters of ISO 25178-2 for a whole map.
 ///
@@ -48,15 +48,18 @@ impl AreaParameters {
 
     /// The parameters of `heights` on a rectangle of `sides` along x and y.
     ///
-    /// Heights and sides have the same unit. Parameters are `NaN` if a point is missing.
+    /// Heights and sides have the same unit. Points that are `NaN` are missing: the parameters are those of the measured
+    /// points and of pairs and meshes of them.
     #[must_use]
     pub fn of(heights: &Field, sides: [f64; 2]) -> Self {
-        let (grid, mean) = (heights.grid(), heights.mean());
+        let grid = heights.grid();
+        let (of_measured, n) = mean(heights);
+        let mean = if n == grid.len() { heights.mean() } else { of_measured };
         let mut sums = [0.0; 4];
         // Summed row by row, so that rounding errors do not grow with the whole map.
         for iy in 0..grid.ny() {
             let mut row_sums = [0.0; 4];
-            for height in heights.row(iy) {
+            for height in heights.row(iy).iter().filter(|height| !height.is_nan()) {
                 let h = height - mean;
                 let squared = h * h;
                 for (sum, term) in row_sums.iter_mut().zip([h.abs(), squared, squared * h, squared * squared]) {
@@ -65,7 +68,7 @@ impl AreaParameters {
             }
             sums.iter_mut().zip(row_sums).for_each(|(sum, row)| *sum += row);
         }
-        let [sa, m2, m3, m4] = sums.map(|sum| sum / grid.len() as f64);
+        let [sa, m2, m3, m4] = sums.map(|sum| sum / n as f64);
         let sq = m2.sqrt();
         let (sp, sv) = (heights.max() - mean, mean - heights.min());
         let spacing = [sides[0] / grid.nx() as f64, sides[1] / grid.ny() as f64];
@@ -79,11 +82,15 @@ impl AreaParameters {
 /// For each mesh, it is the mean over both divisions into two triangles.
 fn developed(heights: &Field, [dx, dy]: [f64; 2]) -> f64 {
     let grid = heights.grid();
-    let mut areas = 0.0;
+    let (mut areas, mut n_meshes) = (0.0, 0_usize);
     for iy in 1..grid.ny() {
         let (below, above) = (heights.row(iy - 1), heights.row(iy));
         let mut row = 0.0;
         for (a, b) in below.windows(2).zip(above.windows(2)) {
+            if [a[0], a[1], b[0], b[1]].iter().any(|height| height.is_nan()) {
+                continue;
+            }
+            n_meshes += 1;
             let x = [(a[1] - a[0]) / dx, (b[1] - b[0]) / dx];
             let y = [(b[0] - a[0]) / dy, (b[1] - a[1]) / dy];
             for (gx, gy) in [(x[0], y[0]), (x[1], y[1]), (x[0], y[1]), (x[1], y[0])] {
@@ -94,8 +101,7 @@ fn developed(heights: &Field, [dx, dy]: [f64; 2]) -> f64 {
         }
         areas += row;
     }
-    let triangles = 4 * (grid.nx() - 1) * (grid.ny() - 1);
-    if triangles > 0 { areas / triangles as f64 } else { 0.0 }
+    if n_meshes > 0 { areas / (4 * n_meshes) as f64 } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -99,8 +99,10 @@ pub enum Unit {
 /// Units from the user, for a file that does not name its units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scales {
-    /// The unit of coordinates, and of heights if `height_scale` is not given.
+    /// The unit of coordinates, and of heights if neither of the other two is given.
     pub unit: Option<LengthUnit>,
+    /// The unit of heights, where it is another one.
+    pub height_unit: Option<LengthUnit>,
     /// The height (m) of the number 1, or of one level of grey.
     pub height_scale: Option<f64>,
 }
@@ -129,8 +131,11 @@ pub enum LengthUnitError {
         /// The scale as given.
         value: f64,
     },
+    /// A unit and a scale are given for the same heights.
+    #[error("height_unit and height_scale both say how long the height 1 is; give one of them")]
+    TwoScales,
     /// A scale is given for heights that are in metres already.
-    #[error("height_scale: the file gives its heights in metres; omit height_scale")]
+    #[error("the file names the unit of its heights; omit height_scale and height_unit")]
     HeightsInMetres,
     /// A unit is given for levels of grey on a map without a size.
     #[error("unit: levels of grey have no unit, and height_scale (m) gives their height; omit unit")]

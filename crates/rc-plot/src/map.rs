@@ -42,7 +42,7 @@ pub enum Shade {
         /// The value whose logarithm is 0.
         unit: f64,
     },
-    /// Colours of a linear scale, with a colour bar.
+    /// Colours of a linear scale, with a colour bar. `NaN` is red.
     Values {
         /// Values of the field at the ends of the colour bar.
         range: (f64, f64),
@@ -129,6 +129,9 @@ pub fn draw_map<B: DrawingBackend>(area: &Area<B>, map: &Map<'_>, font: f64) -> 
     }
 }
 
+/// The colour of a missing point, which no palette has.
+const MISSING: RGBColor = RGBColor(214, 39, 40);
+
 fn rasterise(map: &Map<'_>, size: (u32, u32)) -> Raster {
     match map.shade {
         Shade::Contact => {
@@ -145,7 +148,9 @@ fn rasterise(map: &Map<'_>, size: (u32, u32)) -> Raster {
         Shade::PartOfContact => Raster::of(map.field, size, |part| part, |part| Palette::Ink.colour(part)),
         Shade::Values { range: (low, high), palette, .. } => {
             let span = if high > low { high - low } else { 1.0 };
-            Raster::of(map.field, size, |value| value, |value| palette.colour((value - low) / span))
+            // A pixel with a missing point is missing, so that single ones stay visible.
+            let colour = |value: f64| if value.is_nan() { MISSING } else { palette.colour((value - low) / span) };
+            Raster::of(map.field, size, |value| value, colour)
         }
     }
 }

@@ -10,7 +10,7 @@ use rc_cli::scene::resolve;
 use rc_cli::scene::surface::{LoadedSurface, SurfaceSetup};
 use rc_cli::{inspect, scene::heights, surface as surfaces};
 use rc_core::Field;
-use rc_heights::HeightMap;
+use rc_heights::{HeightMap, ReadParams};
 use rc_sweep::memory::Budget;
 
 use crate::arrays::{self, Heights};
@@ -29,8 +29,9 @@ fn parts(py: Python<'_>, map: HeightMap) -> PyResult<MapParts<'_>> {
 /// Names of the channels of a file, each with whether it has heights.
 #[pyfunction]
 pub(crate) fn channels(py: Python<'_>, path: PathBuf) -> PyResult<Vec<(String, bool)>> {
-    let channels = on_threads(py, 0, move || rc_heights::channels(&path, &rc_heights::ReadParams::default()))?
-        .map_err(|error| raised(error.into()))?;
+    let params = ReadParams { max_bytes: rc_sweep::memory::read_limit(None), ..ReadParams::default() };
+    let channels =
+        on_threads(py, 0, move || rc_heights::channels(&path, &params))?.map_err(|error| raised(error.into()))?;
     Ok(channels.into_iter().map(|channel| (channel.name, channel.is_height)).collect())
 }
 

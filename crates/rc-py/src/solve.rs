@@ -10,6 +10,7 @@ use rc_cli::run::threads;
 use rc_cli::scene::keys::{KernelName, RunKeys, Scene};
 use rc_cli::scene::surface::{LoadedSurface, Source};
 use rc_cli::solve::{CheckedScene, SolvedParts};
+use rc_cli::warnings::shown::refuse;
 use rc_core::{Kernel, Observer};
 use rc_heights::HeightMap;
 use rc_sweep::memory::Budget;
@@ -50,6 +51,7 @@ struct Prepared {
     kernel: Option<OwnKernel>,
     map: Option<HeightMap>,
     budget: Budget,
+    is_strict: bool,
     started: Instant,
 }
 
@@ -105,25 +107,30 @@ impl Prepared {
         }
         let map = given.heights.as_ref().map(|heights| arrays::map_of(heights, given.sides)).transpose()?;
         let mut scene = match &map {
-            Some(_) => CheckedScene::of_map(surface, given.sides, contact),
+            Some(map) => {
+                let grid = map.heights.grid();
+                CheckedScene::of_map(surface, (given.sides, [grid.nx(), grid.ny()]), contact)
+            }
             None => CheckedScene::new(surface, contact),
         }
         .map_err(raised)?;
         scene.contact.params.method_follows_memory &= !given.is_row;
         let kernel = given.kernel.as_ref().map(|symbol| own_kernel(symbol, &scene, map.as_ref())).transpose()?;
-        Ok(Self { scene, kernel, map, budget: Budget::new(run.memory_limit), started })
+        Ok(Self { scene, kernel, map, budget: Budget::new(run.memory_limit), is_strict: run.strict, started })
     }
 
     /// Solves on the threads of the caller.
     fn solve(self, observer: &dyn Observer) -> Result<Parts, CliError> {
-        let Self { scene, kernel, map, budget, started } = self;
+        let Self { scene, kernel, map, budget, is_strict, started } = self;
         let surface = load(&scene, map)?;
         let own = kernel.as_ref().map(|kernel| kernel as &dyn Kernel);
         let named = if own.is_none() { Some(scene.contact.kernel()?) } else { None };
         let named = named.as_ref().map(|kernel| &**kernel as &dyn Kernel);
         let chosen = own.or(named).expect("a kernel is the caller's or has a name");
-        let solved = scene.solve(scene.problem(&surface, chosen, budget), started, observer)?;
-        let SolvedParts { solution, failure, flow, wall } = solved.into_parts();
+        let problem = scene.problem(&surface, chosen, budget);
+        refuse(&problem.warnings(), is_strict, "; nothing was solved")?;
+        let solved = scene.solve(problem, started, observer)?;
+        let SolvedParts { solution, failure, flow, warnings, wall } = solved.into_parts();
         let solution =
             if own.is_some() { solution.into_owned() } else { solution.into_owned_with(scene.contact.kernel()?) };
         // This is all that is kept of a map, since its heights are the caller's.
@@ -131,7 +138,7 @@ impl Prepared {
         let waves = surface.wave_file().cloned();
         let contact = scene.contact;
         let failure = failure.map(|failure| failure.to_string());
-        Ok(Parts { surface: surface.keys, waves, contact, solution, failure, flow, wall, height_and_slope })
+        Ok(Parts { surface: surface.keys, waves, contact, solution, failure, flow, warnings, wall, height_and_slope })
     }
 }
 

@@ -13,7 +13,7 @@ use rc_cli::scene::wave_file::WaveFile;
 use rc_cli::solve::{MapHeights, ResultFiles, SolvedFlow};
 use rc_core::{Field, Grid};
 use rc_solver::{Solution, Status};
-use rc_sweep::Summary;
+use rc_sweep::{Summary, Warning};
 
 use crate::arrays::{self, Heights};
 use crate::errors::{bad_input, raised};
@@ -30,6 +30,8 @@ pub(crate) struct Parts {
     pub(crate) failure: Option<String>,
     /// The flow through the gap, if it was asked for and converged.
     pub(crate) flow: Option<SolvedFlow>,
+    /// The warnings that were known before the solve.
+    pub(crate) warnings: Vec<Warning>,
     pub(crate) wall: Duration,
     /// Rms height (λ) and rms slope.
     pub(crate) height_and_slope: [f64; 2],
@@ -65,8 +67,8 @@ struct Found {
 
 impl Found {
     fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
-        let Parts { surface, waves, contact, solution, flow, .. } = &self.parts;
-        ResultFiles { surface, map, waves: waves.as_deref(), contact, solution, flow: flow.as_ref() }
+        let Parts { surface, waves, contact, solution, flow, warnings, .. } = &self.parts;
+        ResultFiles { surface, map, waves: waves.as_deref(), contact, solution, flow: flow.as_ref(), warnings }
     }
 
     fn summary(&self) -> &Summary {

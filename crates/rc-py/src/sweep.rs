@@ -61,7 +61,8 @@ pub(crate) fn plan_sweep(py: Python<'_>, keys: &Bound<'_, PyDict>, wanted: Wante
     let control = if penetrations { ControlKind::Penetration } else { ControlKind::Pressure };
     let lists = SweepLists { control, loads: Loads(loads), seeds: seeds.map(Seeds) };
     let map = heights.as_ref().map(|heights| mark(py, heights, folder.is_some())).transpose()?;
-    let map = map.map(|mark| MapMark { sides, mark });
+    let points = heights.as_ref().map(arrays::grid_of).transpose()?.map(|grid| [grid.nx(), grid.ny()]);
+    let map = map.zip(points).map(|(mark, points)| MapMark { sides, points, mark });
     let name = file.as_deref().and_then(Path::file_stem).unwrap_or_default().to_string_lossy().into_owned();
     let plan = on_threads(py, 0, move || plan(&name, &scene, &lists, map))?.map_err(raised)?;
     let plan = SweepPlan { keeps_fields: fields, ..plan };

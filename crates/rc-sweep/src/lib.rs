@@ -59,6 +59,7 @@ mod shard;
 mod summary;
 mod sweep;
 mod table;
+mod warning;
 mod workers;
 
 pub use content::{Cells, SweepRows, finished_rows, settings_in};
@@ -80,3 +81,4 @@ pub use shard::{Shard, SweepShape};
 pub use summary::{SolveContext, Summary, to_json};
 pub use sweep::Sweep;
 pub use table::n_not_converged;
+pub use warning::{Warning, WarningCode};

@@ -11,6 +11,7 @@ use crate::content::Cells;
 use crate::leakage::LeakageSummary;
 use crate::memory;
 use crate::plan::ControlKind;
+use crate::warning::Warning;
 
 /// One solved contact problem. Pressures are in Pa, lengths in m, and fractions relative to the nominal area.
 ///
@@ -134,6 +135,11 @@ pub struct Summary {
     /// Flow through the gap, if it was requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub leakage: Option<LeakageSummary>,
+    /// Doubts about the input and the result.
+    ///
+    /// Summaries of older versions have none.
+    #[serde(default)]
+    pub warnings: Vec<Warning>,
     /// Time from the parsed scene to the certified solution, in seconds.
     ///
     /// It includes the evaluation of heights.
@@ -218,6 +224,7 @@ impl Summary {
             iterations: info.fine_iterations(),
             operator_applications: info.fine_operator_applications(),
             leakage: None,
+            warnings: Vec::new(),
             wall_seconds: context.wall.as_secs_f64(),
             peak_memory_bytes: memory::peak(),
             threads: context.threads,
@@ -227,7 +234,7 @@ impl Summary {
 
     /// The summary as the cells of a row.
     ///
-    /// The cells of a flow are `permeance_x`, `permeance_y`, their errors (all in m³), and `percolates` (along x and
+    /// The cell `warnings` has the codes of the warnings. The cells of a flow are `permeance_x`, `permeance_y`, their errors (all in m³), and `percolates` (along x and
     /// along y).
     ///
     /// # Panics
@@ -235,6 +242,8 @@ impl Summary {
     #[must_use]
     pub fn cells(&self) -> Cells {
         let Ok(Value::Object(mut cells)) = serde_json::to_value(self) else { unreachable!("a record is an object") };
+        let codes = self.warnings.iter().map(|warning| Value::from(warning.code.name())).collect::<Vec<_>>();
+        cells.insert("warnings".to_owned(), codes.into());
         if let (Some(leakage), Some(_)) = (&self.leakage, cells.shift_remove("leakage")) {
             cells.extend(leakage.cells().map(|(column, value)| (column.to_owned(), value)));
         }

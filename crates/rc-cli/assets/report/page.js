@@ -20,14 +20,20 @@ function commands(list) {
   ]);
 }
 
+function warnings(texts) {
+  if (texts.length === 0) return [];
+  return [make("ul", { class: "warnings" }, ...texts.map((text) => make("li", {}, text)))];
+}
+
 function showPage() {
   const data = JSON.parse(document.getElementById("data").textContent);
   const tile = ({ name, value }) => make("div", { class: "tile" }, make("b", {}, value), make("span", {}, name));
-  const body = { mean: meanPage, result: resultPage, sweep: sweepPage }[data.kind](data);
+  const body = { mean: meanPage, result: resultPage, surface: surfacePage, sweep: sweepPage }[data.kind](data);
   const files = data.files.map(({ title, text }) => make("details", {}, make("summary", {}, title), make("pre", {}, text)));
   document.getElementById("page").replaceChildren(
     make("header", {}, make("h1", {}, data.title), make("span", { class: data.good ? "badge" : "badge bad" }, data.status)),
     make("p", { class: "quiet" }, data.subtitle),
+    ...warnings(data.warnings),
     make("div", { class: "tiles" }, ...data.tiles.map(tile)),
     ...body,
     make("h2", {}, "Repeat it"),

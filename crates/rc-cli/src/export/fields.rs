@@ -6,9 +6,9 @@ use rc_core::Field;
 
 use crate::error::CliError;
 use crate::files::flow::FLUX_FILES;
+use crate::files::names::HEIGHTS_FILE;
 use crate::files::result::{ResultFolder, in_cell};
 use crate::scene::heights::check_finite;
-use crate::scene::surface::HEIGHTS_FILE;
 
 /// The fields of a result, all on one grid.
 pub(super) struct Fields {

@@ -3,4 +3,5 @@
 pub mod checkpoint;
 pub(crate) mod coarsen;
 pub(crate) mod flow;
+pub(crate) mod names;
 pub mod result;

@@ -3,14 +3,18 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use rc_heights::{Layout, LengthUnit};
+use rc_heights::{Layout, LengthUnit, Mask};
+use rc_sweep::memory::ByteSize;
 
-use crate::scene::values::GridSpec;
+use crate::scene::keys::{RunKeys, SurfaceKeys};
+use crate::scene::values::{GridSpec, Marks};
 
 /// Arguments of `rc inspect`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InspectArgs {
-    /// A height map, a result folder, or its summary.json or pressure.npy; with --spectrum, a file of waves
+    /// A height map, a folder of a result or a surface, or a scene; with --spectrum, a file of waves
+    ///
+    /// A result is also found by its summary.json or pressure.npy.
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
     /// FILE has Fourier coefficients, as rc solve --spectrum reads them
@@ -32,11 +36,20 @@ pub(crate) struct InspectArgs {
     /// Unit of lengths in a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]
     #[arg(long, value_name = "UNIT")]
     pub(crate) unit: Option<LengthUnit>,
+    /// Unit of heights, where it differs from --unit
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) height_unit: Option<LengthUnit>,
     /// Height (m) of the value 1 in a file without a unit; overrides --unit
     ///
     /// In an image, 1 is one level of grey.
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) height_scale: Option<f64>,
+    /// Values that mark missing points, in the numbers of the file: -9999, or -9999,1e30
+    #[arg(long, value_name = "VALUE[,VALUE]", allow_hyphen_values = true)]
+    pub(crate) missing: Option<Marks>,
+    /// Masked points of a .gwy file: use (they are missing) or ignore [default: use]
+    #[arg(long, value_name = "use|ignore")]
+    pub(crate) mask: Option<Mask>,
     /// Channel of a file with several [default: the first with heights]
     ///
     /// The list of channels is printed before the statistics.
@@ -51,4 +64,36 @@ pub(crate) struct InspectArgs {
     /// Print the statistics as JSON, with the whole spectrum
     #[arg(long)]
     pub(crate) json: bool,
+    /// Memory that the file may take when it is read, such as 2GB [default: a quarter of the machine]
+    #[arg(long, value_name = "SIZE")]
+    pub(crate) memory_limit: Option<ByteSize>,
+    /// A warning is an error: exit code 2
+    #[arg(long)]
+    pub(crate) strict: bool,
+}
+
+impl InspectArgs {
+    /// The keys of the map.
+    pub(crate) fn keys(&self) -> SurfaceKeys {
+        SurfaceKeys {
+            heights: Some(self.file.clone()),
+            cell: self.cell,
+            cell_y: self.cell_y,
+            unit: self.unit,
+            height_unit: self.height_unit,
+            height_scale: self.height_scale,
+            missing: self.missing.clone(),
+            mask: self.mask,
+            channel: self.channel.clone(),
+            layout: self.layout,
+            grid: self.grid,
+            read_limit: self.memory_limit,
+            ..SurfaceKeys::default()
+        }
+    }
+
+    /// How the command prints its warnings.
+    pub(crate) fn run_keys(&self) -> RunKeys {
+        RunKeys { strict: self.strict, ..RunKeys::default() }
+    }
 }

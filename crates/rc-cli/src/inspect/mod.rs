@@ -11,22 +11,25 @@ use std::path::{Path, PathBuf};
 use rc_core::quantity::digits;
 use rc_core::{Field, PeriodicCell};
 use rc_fractal::moments_of_grid;
-use rc_heights::{ChannelInfo, HeightMap, ReadParams, Scales, npy};
+use rc_heights::{ChannelInfo, HeightMap, npy};
 use rc_solver::PressureStatistics;
 use rc_sweep::memory::Budget;
-use rc_sweep::{Summary, files, to_json};
+use rc_sweep::{Summary, Warning, files, to_json};
 use serde::Serialize;
 
 use self::args::InspectArgs;
 use self::record::{ChannelRow, SurfaceRecord};
 use crate::error::CliError;
+use crate::files::names::SCENE_FILE;
 use crate::files::result::{ResultFolder, SUMMARY_FILE};
-use crate::scene::keys::SurfaceKeys;
-use crate::scene::surface::{HEIGHTS_FILE, LoadedSurface};
+use crate::scene::heights::CellOfMap;
+use crate::scene::keys::{RunKeys, Scene, SurfaceKeys};
+use crate::scene::surface::LoadedSurface;
 use crate::scene::values::GridSpec;
 use crate::scene::{file, heights, resolve};
-use crate::terminal;
 use crate::text::{solved, written};
+use crate::warnings::shown::{refuse, tell};
+use crate::{terminal, warnings};
 
 /// Names of files that identify a result.
 const RESULT_FILES: [&str; 2] = [SUMMARY_FILE, "pressure.npy"];
@@ -36,6 +39,7 @@ const RESULT_FILES: [&str; 2] = [SUMMARY_FILE, "pressure.npy"];
 struct ResultStatistics {
     summary: Summary,
     pressure: PressureStatistics,
+    warnings: Vec<Warning>,
 }
 
 /// Runs `rc inspect`.
@@ -43,7 +47,8 @@ struct ResultStatistics {
 /// # Errors
 /// [`CliError::Input`] when the file is neither a height map nor part of a result.
 pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
-    let text = match result_folder(&args.file).filter(|_| !args.spectrum) {
+    let of_scene = is_scene(&args.file) && !args.spectrum;
+    let text = match result_folder(&args.file).filter(|_| !args.spectrum && !of_scene) {
         Some(_) if args.cell.is_some() || args.cell_y.is_some() => {
             return Err(CliError::input("cell: a result has its own, in its scene.toml; omit --cell and --cell-y"));
         }
@@ -56,9 +61,27 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
             if args.json { to_json(&statistics) } else { text::pressure(&statistics, statistics.grid) }
         }
         None if args.spectrum => inspect_waves(args)?,
+        None if of_scene => shown(args, &of_surface(&args.file)?)?,
         None => inspect_heights(args)?,
     };
     terminal::print(&text)
+}
+
+/// The folder of a scene file, or the folder itself.
+pub(crate) fn folder_of(path: &Path) -> &Path {
+    if !is_scene(path) || path.is_dir() {
+        return path;
+    }
+    let parent = path.parent();
+    parent.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Whether `path` is a scene, or a folder of `rc surface`, which has a scene but no summary.
+pub(crate) fn is_scene(path: &Path) -> bool {
+    if path.is_dir() {
+        return path.join(SCENE_FILE).is_file() && !path.join(SUMMARY_FILE).exists();
+    }
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
 }
 
 /// The folder of the result that `file` is or belongs to.
@@ -87,7 +110,7 @@ pub fn result(folder: &Path) -> Result<String, CliError> {
 /// # Errors
 /// [`CliError::Input`] for a map that has no statistics.
 pub fn height_map(name: &Path, map: HeightMap, sides: [Option<f64>; 2]) -> Result<String, CliError> {
-    Ok(to_json(&Inspected::new(name, map, &ReadParams::default(), sides)?.record))
+    Ok(to_json(&Inspected::of_map(name, map, sides)?.record))
 }
 
 /// The text of `rc surface --json` for a surface in a cell of side `side` (m).
@@ -100,142 +123,151 @@ pub fn surface(surface: &LoadedSurface, side: f64) -> Result<String, CliError> {
 }
 
 fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
-    // A folder of `rc surface` has heights, but not pressures.
-    let heights = folder.join(HEIGHTS_FILE);
-    if !folder.join(SUMMARY_FILE).exists() && heights.is_file() {
-        return Err(CliError::in_file(folder, format_args!("not a result; inspect {} instead", heights.display())));
-    }
     let result = ResultFolder::read(folder)?;
     let sides = result.sides();
     let elements = result.summary.grid;
     let pressure = PressureStatistics::of(&finite(&folder.join("pressure.npy"), result.pressure)?);
     if json {
-        return Ok(to_json(&ResultStatistics { summary: result.summary, pressure }));
+        let warnings = result.summary.warnings.clone();
+        return Ok(to_json(&ResultStatistics { summary: result.summary, pressure, warnings }));
     }
+    tell(&result.summary.warnings, &RunKeys::default());
     Ok(solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &text::pressure(&pressure, elements))
 }
 
-/// A height map with its statistics.
-struct Inspected {
-    /// Heights in λ.
-    heights: Field,
-    record: SurfaceRecord,
-    /// Note that is printed before the statistics.
-    note: String,
+/// A surface with its statistics.
+pub(crate) struct Inspected {
+    /// Heights in λ; `NaN` where missing.
+    pub(crate) heights: Field,
+    pub(crate) record: SurfaceRecord,
 }
 
 impl Inspected {
-    fn new(path: &Path, map: HeightMap, params: &ReadParams, given: [Option<f64>; 2]) -> Result<Self, CliError> {
-        heights::check_heights(path, &map.heights, params)?;
+    /// A map in metres, which may have missing points.
+    fn of_map(path: &Path, map: HeightMap, given: [Option<f64>; 2]) -> Result<Self, CliError> {
         if map.heights.max() <= map.heights.min() {
             let message =
                 format_args!("all heights are {}; a flat surface has no statistics", digits(map.heights.max(), 6));
             return Err(CliError::in_file(path, message));
         }
-        let [side, side_y] = heights::sides(path, map.sides, given)?;
-        let side = side.or(file::example().surface.cell).unwrap_or(1.0);
-        let cell = PeriodicCell::rectangle(side, side_y.unwrap_or(side)).map_err(CliError::input)?;
+        let default = file::example().surface.cell;
+        let CellOfMap { cell, cell_y, mut assumed } = CellOfMap::of(path, &map, given)?;
+        let (cell, cell_y) = match cell {
+            Some(side) => (side, cell_y),
+            None => {
+                let side = default.unwrap_or(1.0);
+                assumed.push(assumed_side(side));
+                (side, CellOfMap::of(path, &map, [Some(side), given[1]])?.cell_y)
+            }
+        };
+        let mut warnings = warnings::surface::of_map(&map);
+        warnings.extend(warnings::surface::assumed(&assumed));
+        let notes = map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
+        let cell = PeriodicCell::rectangle(cell, cell_y.unwrap_or(cell)).map_err(CliError::input)?;
+        let is_complete = map.missing() == 0;
         let (heights, _) = heights::in_cell(path, map.heights, cell)?;
-        let grid = heights.grid();
-        let assumed = if map.sides.is_none() && given[0].is_none() { ASSUMED } else { "" };
-        let taken = if map.sides.is_none() && side_y.is_none() && grid.nx() != grid.ny() { TAKEN } else { "" };
-        let note = [assumed, taken].concat();
-        let record = SurfaceRecord::of(&heights, side, moments_of_grid(&heights));
-        Ok(Self { heights, record, note })
+        let record = if is_complete {
+            SurfaceRecord::of(&heights, cell.side(), moments_of_grid(&heights))
+        } else {
+            SurfaceRecord::of_measured(&heights, cell.side())
+        };
+        warnings.extend(record.shape().warnings());
+        Ok(Self { heights, record: SurfaceRecord { warnings, notes, ..record } })
     }
+}
+
+/// The surface of a scene, or of a folder with one.
+///
+/// # Errors
+/// [`CliError::Input`].
+pub(crate) fn of_surface(path: &Path) -> Result<Inspected, CliError> {
+    let scene = resolve::layers(Some(path), Scene::default())?;
+    resolve::check_size(&scene.surface)?;
+    let setup = resolve::surface(scene.surface)?;
+    let surface = setup.load()?;
+    Budget::new(None).check_grid("the surface", surface.grid)?;
+    let heights = surface.heights()?.into_owned();
+    let record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments());
+    let warnings = [surface.warnings, record.shape().warnings()].concat();
+    Ok(Inspected { heights, record: SurfaceRecord { warnings, notes: surface.notes, ..record } })
+}
+
+/// Writes the pictures of the surface of a scene, and returns their names.
+///
+/// # Errors
+/// [`CliError`].
+pub(crate) fn draw_surface(path: &Path, folder: &Path) -> Result<Vec<String>, CliError> {
+    let Inspected { heights, record } = of_surface(path)?;
+    files::check_folder(folder)?;
+    Ok(pictures::write(folder, &heights, &record)?)
 }
 
 /// Statistics of a height map, after a list of its channels if it has several.
 ///
 /// An error of such a file has the names of its channels.
 fn inspect_heights(args: &InspectArgs) -> Result<String, CliError> {
-    let channels = rc_heights::channels(&args.file, &ReadParams { layout: args.layout, ..ReadParams::default() })?;
+    let keys = args.keys();
+    let params = keys.read_params();
+    let channels = rc_heights::channels(&args.file, &params)?;
     let several = channels.len() > 1;
-    match statistics(args) {
+    let map = heights::read(&args.file, &params, keys.scales());
+    match map.and_then(|map| Inspected::of_map(&args.file, map, [args.cell, args.cell_y])) {
         Err(CliError::Input(message)) if several && args.channel.is_none() && channels.iter().any(|c| c.is_height) => {
             Err(CliError::input(format_args!("{message}; the file has the channels {}", text::names(&channels))))
         }
         Err(error) => Err(error),
-        Ok((mut record, note)) if args.json => {
-            tell(&note);
+        Ok(mut found) => {
+            let listed = if several && !args.json { text::channels(&channels) } else { String::new() };
             let row = |ChannelInfo { name, is_height }| ChannelRow { name, is_height };
-            record.channels = if several { channels.into_iter().map(row).collect() } else { Vec::new() };
-            Ok(to_json(&record))
+            found.record.channels = if several { channels.into_iter().map(row).collect() } else { Vec::new() };
+            Ok(listed + &shown(args, &found)?)
         }
-        Ok((record, note)) => Ok(list(&channels) + &note + &text::heights(&record) + &written(args.out.as_deref())),
     }
 }
 
-/// The channels of a file that has several.
-fn list(channels: &[ChannelInfo]) -> String {
-    if channels.len() > 1 { text::channels(channels) } else { String::new() }
-}
-
-/// The record of a height map and a note about its cell. Its pictures are written.
-fn statistics(args: &InspectArgs) -> Result<(SurfaceRecord, String), CliError> {
-    let params = ReadParams { channel: args.channel.clone(), layout: args.layout, ..ReadParams::default() };
-    let map = heights::read(&args.file, &params, Scales { unit: args.unit, height_scale: args.height_scale })?;
-    let Inspected { heights, record, note } = Inspected::new(&args.file, map, &params, [args.cell, args.cell_y])?;
-    draw(args, &heights, &record)?;
-    Ok((record, note))
+/// The text about a surface. Its pictures are written, and its warnings told.
+fn shown(args: &InspectArgs, Inspected { heights, record }: &Inspected) -> Result<String, CliError> {
+    refuse(&record.warnings, args.strict, "; nothing was written")?;
+    tell(&record.warnings, &args.run_keys());
+    if let Some(folder) = &args.out {
+        files::check_folder(folder)?;
+        pictures::write(folder, heights, record)?;
+    }
+    Ok(if args.json { to_json(record) } else { text::heights(record) + &written(args.out.as_deref()) })
 }
 
 /// Statistics of a file of waves.
 ///
 /// Moments are those of the waves, and the distribution of heights is that of a grid.
 fn inspect_waves(args: &InspectArgs) -> Result<String, CliError> {
-    let keys = SurfaceKeys {
+    let side = args.cell.or(file::example().surface.cell).unwrap_or(1.0);
+    let setup = resolve::surface(SurfaceKeys {
         spectrum: Some(args.file.clone()),
-        cell: args.cell.or(file::example().surface.cell),
-        cell_y: args.cell_y,
-        unit: args.unit,
-        height_scale: args.height_scale,
-        grid: args.grid,
-        ..SurfaceKeys::default()
-    };
-    let setup = resolve::surface(keys)?;
+        heights: None,
+        cell: Some(side),
+        ..args.keys()
+    })?;
     let mut surface = setup.load()?;
     if let (None, Some(waves)) = (args.grid, surface.wave_file().map(|file| file.surface().waves())) {
         surface.grid = resolve::checked_grid(GridSpec::square(ELEMENTS_PER_WAVE * waves))?;
     }
     Budget::new(None).check_grid("the surface", surface.grid)?;
-    let heights = surface.heights()?;
-    let record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments());
-    draw(args, &heights, &record)?;
-    let note = if args.cell.is_none() { ASSUMED } else { "" };
-    Ok(if args.json {
-        tell(note);
-        to_json(&record)
-    } else {
-        note.to_owned() + &text::heights(&record) + &written(args.out.as_deref())
-    })
-}
-
-/// Prints a note beside JSON, on standard error.
-fn tell(note: &str) {
-    if !note.is_empty() {
-        terminal::tell(note.trim_end());
+    let heights = surface.heights()?.into_owned();
+    let mut record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments());
+    if args.cell.is_none() {
+        record.warnings.extend(warnings::surface::assumed(&[assumed_side(side)]));
     }
-}
-
-/// Writes the pictures, if the arguments ask for them.
-fn draw(args: &InspectArgs, heights: &Field, record: &SurfaceRecord) -> Result<(), CliError> {
-    if let Some(folder) = &args.out {
-        files::check_folder(folder)?;
-        pictures::write(folder, heights, record)?;
-    }
-    Ok(())
+    record.warnings.extend(record.shape().warnings());
+    shown(args, &Inspected { heights, record })
 }
 
 /// Elements per shortest wave for files of waves.
 const ELEMENTS_PER_WAVE: usize = 4;
 
-/// Note for a map or waves whose cell is the default.
-const ASSUMED: &str = "the file has no size, so a side of 0.01 m is assumed; give --cell, the side along x\n\n";
-
-/// Note for a map whose cell may be meant in two ways.
-const TAKEN: &str = "this map has no size, so it is taken as a square with different point spacings along x and y, as in rc solve; if the \
-                     spacings are in fact equal, give --cell-y, the side along y\n\n";
+/// The clause about a cell whose side is the default.
+fn assumed_side(side: f64) -> String {
+    format!("a side of {side} m, since the file has no size; --cell gives it")
+}
 
 fn finite(path: &Path, field: Field) -> Result<Field, CliError> {
     heights::check_finite(path, &field)?;

@@ -22,22 +22,33 @@ const TEXT: f64 = 26.0;
 
 /// Writes pictures of `heights` (in λ) and of the statistics in `record`.
 ///
-/// They are `surface.png`, and `spectrum` and `distribution` as PNG and SVG.
+/// They are `surface.png`, and `spectrum` and `distribution` as PNG and SVG. A map with missing points has no spectrum.
+/// The result has the names of the pictures.
 ///
 /// # Errors
 /// [`FileError::Write`].
-pub(crate) fn write(folder: &Path, heights: &Field, record: &SurfaceRecord) -> Result<(), FileError> {
+pub(crate) fn write(folder: &Path, heights: &Field, record: &SurfaceRecord) -> Result<Vec<String>, FileError> {
     let mut staged = Staged::new(folder)?;
+    add(&mut staged, heights, record)?;
+    let names = staged.names().to_vec();
+    staged.commit()?;
+    Ok(names)
+}
+
+/// Adds the pictures to `staged`.
+fn add(staged: &mut Staged, heights: &Field, record: &SurfaceRecord) -> Result<(), FileError> {
     let (range, factor) = ((heights.min(), heights.max()), record.cell);
     let shade = Shade::Values { range, palette: Palette::Viridis, factor, unit: "m" };
-    let map = MapPicture(Map { title: "Height", field: heights, shade, side: record.cell });
+    let title = if record.missing > 0 { "Height (red: missing)" } else { "Height" };
+    let map = MapPicture(Map { title, field: heights, shade, side: record.cell });
     staged.add("surface.png", |path| save_png(&map, path))?;
     let (spectrum, distribution) = (Spectrum(record), Distribution(record));
-    staged.add("spectrum.png", |path| save_png(&spectrum, path))?;
-    staged.add("spectrum.svg", |path| save_svg(&spectrum, path))?;
+    if !record.spectrum.is_empty() {
+        staged.add("spectrum.png", |path| save_png(&spectrum, path))?;
+        staged.add("spectrum.svg", |path| save_svg(&spectrum, path))?;
+    }
     staged.add("distribution.png", |path| save_png(&distribution, path))?;
-    staged.add("distribution.svg", |path| save_svg(&distribution, path))?;
-    staged.commit()
+    staged.add("distribution.svg", |path| save_svg(&distribution, path))
 }
 
 /// The spectrum C(q) with decimal logarithms on both axes.

@@ -2,14 +2,19 @@
 
 use rc_core::{Field, Histogram};
 use rc_fractal::{HurstFit, Moments, SpectrumBin, fit_hurst, radial_spectrum};
-use rc_heights::{AreaParameters, Effect, MapStatistics};
+use rc_heights::{AreaParameters, BorderStep, Effect, MapStatistics};
+use rc_sweep::Warning;
 use serde::Serialize;
+
+use crate::warnings::surface::Shape;
 
 /// Statistics of a height map.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct SurfaceRecord {
     /// Elements along x and y.
     pub(crate) grid: [usize; 2],
+    /// Number of missing points. The statistics are those of the others.
+    pub(crate) missing: usize,
     /// Side of the cell along x (m).
     pub(crate) cell: f64,
     /// Side of the cell along y (m).
@@ -22,12 +27,12 @@ pub(crate) struct SurfaceRecord {
     pub(crate) h_max: f64,
     /// Rms height about the mean (m).
     pub(crate) rms_height: f64,
-    /// Rms slope √⟨|∇h|²⟩.
+    /// Rms slope √⟨|∇h|²⟩; from pairs of measured neighbours if points are missing.
     pub(crate) rms_slope: f64,
-    /// Rms of the mean curvature ½∇²h (1/m).
-    pub(crate) rms_curvature: f64,
-    /// Nayak's parameter α, which is at least 1.5 for a Gaussian isotropic surface.
-    pub(crate) nayak: f64,
+    /// Rms of the mean curvature ½∇²h (1/m); `None` if points are missing.
+    pub(crate) rms_curvature: Option<f64>,
+    /// Nayak's parameter α, which is at least 1.5 for a Gaussian isotropic surface; `None` if points are missing.
+    pub(crate) nayak: Option<f64>,
     /// Ratio of the third central moment to the cube of the rms height.
     ///
     /// It is 0 for a Gaussian.
@@ -42,17 +47,22 @@ pub(crate) struct SurfaceRecord {
     pub(crate) parameters: AreaParameters,
     /// Ratio of rms steps of heights: across the cell's border, to between inner neighbours.
     ///
-    /// It is about 1 for a periodic map.
-    pub(crate) border_step: f64,
+    /// It is about 1 for a periodic map, and `None` if points are missing.
+    pub(crate) border_step: Option<f64>,
     /// Whether the spectrum is of the heights under Hann's window, because they are not periodic.
     pub(crate) windowed: bool,
     /// The power law in the spectrum, if it has one.
     pub(crate) hurst_fit: Option<HurstRow>,
-    /// Radially averaged power spectral density.
+    /// Radially averaged power spectral density; empty if points are missing.
     pub(crate) spectrum: Vec<SpectrumRow>,
     /// Measured map before its treatments and after each of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) treatments: Vec<TreatmentRow>,
+    /// What the reader of the file did, one line each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) notes: Vec<String>,
+    /// Doubts about the surface.
+    pub(crate) warnings: Vec<Warning>,
     /// Channels of the map's file, if it has several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) channels: Vec<ChannelRow>,
@@ -151,30 +161,56 @@ impl SurfaceRecord {
     /// `moments` are exact ones if they are known, else [`rc_fractal::moments_of_grid`].
     #[must_use]
     pub(crate) fn of(heights: &Field, side: f64, moments: Moments) -> Self {
-        let grid = heights.grid();
-        let statistics = MapStatistics::of(heights, side);
-        let windowed = !statistics.border.is_periodic();
+        let border = BorderStep::of(heights);
+        let windowed = !border.is_periodic();
         let rings = if windowed { radial_spectrum(&rc_heights::hann(heights)) } else { radial_spectrum(heights) };
         Self {
+            rms_height: moments.rms_height * side,
+            rms_slope: moments.rms_slope,
+            rms_curvature: Some(moments.rms_curvature / side),
+            nayak: Some(moments.nayak),
+            border_step: Some(border.ratio()),
+            windowed,
+            hurst_fit: fit_hurst(&rings).map(|fit| HurstRow::new(fit, side)),
+            spectrum: rings.iter().map(|ring| SpectrumRow::new(ring, side)).collect(),
+            ..Self::of_measured(heights, side)
+        }
+    }
+
+    /// Slope and range of the surface, for warnings.
+    pub(crate) fn shape(&self) -> Shape {
+        Shape { rms_slope: self.rms_slope, range: self.h_max - self.h_min, sides: [self.cell, self.cell_y] }
+    }
+
+    /// The record of the measured points of `heights` (in λ, `NaN` where missing) in a cell of side `side` (m).
+    ///
+    /// What needs all points is absent.
+    #[must_use]
+    pub(crate) fn of_measured(heights: &Field, side: f64) -> Self {
+        let (grid, statistics) = (heights.grid(), MapStatistics::of(heights, side));
+        Self {
             grid: [grid.nx(), grid.ny()],
+            missing: heights.values().iter().filter(|height| height.is_nan()).count(),
             cell: side,
             cell_y: side * grid.cell_ratio(),
             mean: statistics.mean,
             h_min: statistics.min,
             h_max: statistics.max,
-            rms_height: moments.rms_height * side,
-            rms_slope: moments.rms_slope,
-            rms_curvature: moments.rms_curvature / side,
-            nayak: moments.nayak,
+            rms_height: statistics.parameters.sq,
+            rms_slope: statistics.parameters.sdq,
+            rms_curvature: None,
+            nayak: None,
             skewness: statistics.parameters.ssk,
             kurtosis: statistics.parameters.sku,
             distribution: statistics.distribution,
             parameters: statistics.parameters,
-            border_step: statistics.border.ratio(),
-            windowed,
-            hurst_fit: fit_hurst(&rings).map(|fit| HurstRow::new(fit, side)),
-            spectrum: rings.iter().map(|ring| SpectrumRow::new(ring, side)).collect(),
+            border_step: None,
+            windowed: false,
+            hurst_fit: None,
+            spectrum: Vec::new(),
             treatments: Vec::new(),
+            notes: Vec::new(),
+            warnings: Vec::new(),
             channels: Vec::new(),
         }
     }

@@ -38,10 +38,22 @@ fn more(before: &str, channels: &[ChannelInfo], after: &str) -> String {
 
 /// Statistics of a height map, with a short table of its spectrum and its distribution.
 #[must_use]
-pub(crate) fn heights(record: &SurfaceRecord) -> String {
-    let s = record;
+pub(crate) fn heights(s: &SurfaceRecord) -> String {
+    let heading = "\n  height about mean   density\n";
+    treatments(&s.treatments)
+        + &aligned(&surface_lines(s))
+        + &area_parameters(&s.parameters)
+        + &spectrum_lines(s)
+        + &spectrum_table(&s.spectrum)
+        + heading
+        + &bars(&s.distribution, "m")
+}
+
+/// Names and values of the statistics of a surface.
+pub(crate) fn surface_lines(s: &SurfaceRecord) -> Vec<(&'static str, String)> {
     let lines = [
         ("cell", format!("{} with {} x {} elements", cell([s.cell, s.cell_y]), s.grid[0], s.grid[1])),
+        ("missing", missing(s)),
         (
             "heights",
             format!(
@@ -53,18 +65,23 @@ pub(crate) fn heights(record: &SurfaceRecord) -> String {
         ),
         ("rms height", engineering(s.rms_height, "m")),
         ("rms slope", digits(s.rms_slope, 4)),
-        ("rms curvature", format!("{} 1/m", digits(s.rms_curvature, 4))),
-        ("Nayak parameter", digits(s.nayak, 4)),
+        ("rms curvature", s.rms_curvature.map_or_else(not_known, |curvature| format!("{} 1/m", digits(curvature, 4)))),
+        ("Nayak parameter", s.nayak.map_or_else(not_known, |nayak| digits(nayak, 4))),
         ("skewness, kurtosis", format!("{}, {}", digits(s.skewness, 3), digits(s.kurtosis, 4))),
     ];
-    let heading = "\n  height about mean   density\n";
-    treatments(&s.treatments)
-        + &aligned(&lines)
-        + &area_parameters(&s.parameters)
-        + &spectrum_lines(s)
-        + &spectrum_table(&s.spectrum)
-        + heading
-        + &bars(&s.distribution, "m")
+    lines.into_iter().filter(|(name, _)| *name != "missing" || s.missing > 0).collect()
+}
+
+/// Text of the number of missing points.
+fn missing(s: &SurfaceRecord) -> String {
+    let all = s.grid[0] * s.grid[1];
+    let part = digits(100.0 * s.missing as f64 / all as f64, 3);
+    format!("{} of {all} points ({part} %); all that follows is of the others", s.missing)
+}
+
+/// Text of what needs all points.
+fn not_known() -> String {
+    "needs all points: rc surface --fill".to_owned()
 }
 
 /// One line for each state of a treated map.
@@ -86,24 +103,29 @@ fn treatments(rows: &[TreatmentRow]) -> String {
 
 /// Lines of the parameters of ISO 25178-2.
 fn area_parameters(p: &AreaParameters) -> String {
+    "\n  ISO 25178-2, from differences of neighbours, no filter\n".to_owned() + &aligned(&parameter_lines(p))
+}
+
+/// Names and values of the parameters of ISO 25178-2.
+pub(crate) fn parameter_lines(p: &AreaParameters) -> Vec<(&'static str, String)> {
     let length = |value| engineering(value, "m");
-    let lines = [
+    vec![
         ("Sa, Sq", format!("{}, {}", length(p.sa), length(p.sq))),
         ("Ssk, Sku", format!("{}, {}", digits(p.ssk, 3), digits(p.sku, 4))),
         ("Sp, Sv, Sz", format!("{}, {}, {}", length(p.sp), length(p.sv), length(p.sz))),
         ("Sdq, Sdr", format!("{}, {} %", digits(p.sdq, 4), digits(100.0 * p.sdr, 4))),
-    ];
-    "\n  ISO 25178-2, from differences of neighbours, no filter\n".to_owned() + &aligned(&lines)
+    ]
 }
 
 /// Lines about the periodicity of the map and the power law in its spectrum.
 fn spectrum_lines(s: &SurfaceRecord) -> String {
+    let Some(border_step) = s.border_step else { return aligned(&[("spectrum", not_known())]) };
     let state = if s.windowed {
         "not periodic (rc surface --periodic), so the spectrum is under a Hann window"
     } else {
         "periodic"
     };
-    let border = format!("{} times the step between neighbours: {state}", digits(s.border_step, 3));
+    let border = format!("{} times the step between neighbours: {state}", digits(border_step, 3));
     let law = match &s.hurst_fit {
         None => "no part of the spectrum follows a power law over a factor of 4 in wave number".to_owned(),
         Some(fit) => format!(
@@ -154,6 +176,9 @@ pub(crate) fn pressure(statistics: &PressureStatistics, elements: [usize; 2]) ->
 
 /// About a dozen rows of the spectrum, at equal ratios of the wavenumber.
 fn spectrum_table(spectrum: &[SpectrumRow]) -> String {
+    if spectrum.is_empty() {
+        return String::new();
+    }
     let mut text = "\n  waves per cell      C(q) (m^4)     modes\n".to_owned();
     // Beyond the shortest wave of a surface there is only rounding.
     let noise = spectrum.iter().fold(0.0_f64, |highest, row| highest.max(row.psd)) * 1e-20;

@@ -8,7 +8,7 @@ use clap::Args;
 #[derive(Args, Clone, Debug)]
 #[command(after_help = REPORT_HELP)]
 pub(crate) struct ReportArgs {
-    /// Folder of a result (rc solve --out) or of a sweep (rc sweep --out)
+    /// Folder of a result, a surface or a sweep (--out of rc solve, surface, sweep)
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
     /// The page [default: report.html in DIR]

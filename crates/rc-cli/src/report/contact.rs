@@ -92,6 +92,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
         subtitle: subtitle(&scene, &result),
         status: summary.status.replace('_', " "),
         good: summary.status != "not_converged",
+        warnings: summary.warnings.iter().map(|warning| warning.text.clone()).collect(),
         tiles: tiles(summary),
         commands: commands(folder, &scene),
         files: vec![

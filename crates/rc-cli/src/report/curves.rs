@@ -10,7 +10,7 @@ use super::page::{Command, Page, Text, Tile, WITHOUT_FILES, made};
 use super::percolation;
 use crate::error::CliError;
 use rc_core::quantity::{Scale, count, digits, engineering};
-use rc_sweep::TABLE_FILE;
+use rc_sweep::{TABLE_FILE, WarningCode};
 
 /// The columns of `sweep.csv` that the page uses, in SI units.
 #[derive(Clone, Debug, Deserialize)]
@@ -33,6 +33,9 @@ struct Row {
     permeance_x: Option<f64>,
     #[serde(default)]
     permeance_y: Option<f64>,
+    /// Codes of the warnings, with blanks between them.
+    #[serde(default)]
+    warnings: Option<String>,
     wall_seconds: f64,
 }
 
@@ -93,6 +96,7 @@ pub(super) fn page(folder: &Path, settings: Option<&Value>) -> Result<Page<Curve
         ),
         status,
         good,
+        warnings: warnings(&rows),
         tiles: tiles(&rows),
         commands: settings.map_or_else(Vec::new, commands),
         files,
@@ -100,6 +104,17 @@ pub(super) fn page(folder: &Path, settings: Option<&Value>) -> Result<Page<Curve
         kind: "sweep",
         body: table(scenes, &rows),
     })
+}
+
+/// One line for each code of a warning, with the number of its rows.
+fn warnings(rows: &[Row]) -> Vec<String> {
+    let codes = |row: &Row| row.warnings.clone().unwrap_or_default();
+    let has = |row: &&Row, code: WarningCode| codes(row).split(' ').any(|found| found == code.name());
+    let told = |code: WarningCode| {
+        let n = rows.iter().filter(|row| has(row, code)).count();
+        (n > 0).then(|| format!("{code}: {} ({n} of {})", code.meaning(), count(rows.len(), "row")))
+    };
+    WarningCode::ALL.into_iter().filter_map(told).collect()
 }
 
 fn read(path: &Path) -> Result<Vec<Row>, CliError> {
@@ -285,6 +300,7 @@ mod tests {
             contact_conductance: Some(load),
             permeance_x: Some(4.0 - load),
             permeance_y: None,
+            warnings: None,
             wall_seconds: 0.0,
         };
         let rows = [row(1, 1.0, 0.1), row(1, 2.0, 0.2), row(2, 1.0, 0.3), row(2, 2.0, 0.6)];

@@ -14,6 +14,7 @@ const SCRIPT: &str = concat!(
     include_str!("../../assets/report/maps.js"),
     include_str!("../../assets/report/result.js"),
     include_str!("../../assets/report/sweep.js"),
+    include_str!("../../assets/report/surface.js"),
     include_str!("../../assets/report/mean.js"),
     include_str!("../../assets/report/page.js"),
 );

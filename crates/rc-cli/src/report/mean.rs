@@ -90,6 +90,7 @@ pub(super) fn page(folder: &Path, settings: &Value) -> Result<Page<Body>, CliErr
         subtitle: format!("Mean of {} over realisations, at prescribed {}s", first.mean_of, first.control),
         status,
         good: open == 0,
+        warnings: Vec::new(),
         tiles: tiles(&means),
         commands: vec![command(settings, first)],
         files: files.map(|text| Text { title: "Settings of the sweep", text }).into_iter().collect(),

@@ -1,7 +1,7 @@
-//! `rc report`: one page of a result, a sweep or a mean, for a browser.
+//! `rc report`: one page of a result, a surface, a sweep or a mean, for a browser.
 //!
 //! The page needs no network. It is a frame ([`document`]), a script, and data. [`contact`] makes the data of a solve,
-//! [`curves`] those of a sweep, and [`mean`] those of a mean over realisations. All texts are made here, and the script
+//! [`surface`] those of a surface, [`curves`] those of a sweep, and [`mean`] those of a mean over realisations. All texts are made here, and the script
 //! shows them as text. The script draws maps and charts from numbers.
 
 pub(crate) mod args;
@@ -17,12 +17,14 @@ mod mean;
 mod page;
 mod percolation;
 mod spot_sizes;
+mod surface;
 
 use std::path::Path;
 
 use self::args::ReportArgs;
 use crate::error::CliError;
 use crate::files::result::{SUMMARY_FILE, no_folder};
+use crate::inspect::{folder_of, is_scene};
 use crate::terminal;
 use rc_sweep::{TABLE_FILE, files, settings_in};
 
@@ -31,6 +33,9 @@ const PAGE_FILE: &str = "report.html";
 
 /// The page of what is in `folder`.
 fn html(folder: &Path) -> Result<String, CliError> {
+    if is_scene(folder) && !folder.join(TABLE_FILE).exists() {
+        return Ok(document::html(&surface::page(folder)?));
+    }
     if !folder.is_dir() {
         return Err(CliError::in_file(folder, no_folder(folder, "a solve or a sweep")));
     }
@@ -56,7 +61,7 @@ fn html(folder: &Path) -> Result<String, CliError> {
 /// # Errors
 /// [`CliError`].
 pub(crate) fn run(args: &ReportArgs) -> Result<(), CliError> {
-    let target = args.out.clone().unwrap_or_else(|| args.folder.join(PAGE_FILE));
+    let target = args.out.clone().unwrap_or_else(|| folder_of(&args.folder).join(PAGE_FILE));
     if target.is_dir() {
         return Err(CliError::in_file(&target, format_args!("is a folder; give --out FILE, for example {PAGE_FILE}")));
     }

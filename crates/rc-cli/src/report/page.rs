@@ -10,6 +10,8 @@ pub(super) struct Page<B> {
     /// Status in one word. `good` says whether it is the desired one.
     pub(super) status: String,
     pub(super) good: bool,
+    /// Doubts about what the page shows.
+    pub(super) warnings: Vec<String>,
     /// The most important numbers.
     pub(super) tiles: Vec<Tile>,
     /// Commands that repeat the result.
@@ -18,7 +20,7 @@ pub(super) struct Page<B> {
     pub(super) files: Vec<Text>,
     /// Program and version that made the page.
     pub(super) made: String,
-    /// `result`, `sweep` or `mean`, which tells the script which parts to draw.
+    /// `result`, `surface`, `sweep` or `mean`, which tells the script which parts to draw.
     pub(super) kind: &'static str,
     #[serde(flatten)]
     pub(super) body: B,

@@ -55,6 +55,11 @@ impl Progress {
         self.stop.reason()
     }
 
+    /// Does `work`, which may print, without the bar.
+    pub(crate) fn hidden<T>(&self, work: impl FnOnce() -> T) -> T {
+        self.bar.suspend(work)
+    }
+
     /// Shows what is done before the first level.
     pub(crate) fn say(&self, what: &'static str) {
         self.bar.set_message(what);

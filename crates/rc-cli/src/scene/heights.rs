@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rc_core::{Field, Grid, PeriodicCell};
-use rc_heights::{Format, HeightMap, Layout, ReadParams, SAME_LENGTH, Scales};
+use rc_heights::{Format, HeightMap, Layout, ReadNote, ReadParams, SAME_LENGTH, Scales};
 
 use super::as_read::AsRead;
 use crate::error::CliError;
@@ -58,20 +58,85 @@ pub(crate) fn check_heights(path: &Path, field: &Field, params: &ReadParams) -> 
     }
 }
 
-/// Sides of the cell along x and y (m).
-///
-/// They are those of the map if its file has them, else those `given`. If both exist, they must be equal. The second is
-/// `None` for a square.
-///
-/// # Errors
-/// [`CliError::Input`].
-pub(crate) fn sides(
-    path: &Path,
-    of_file: Option<[f64; 2]>,
-    given: [Option<f64>; 2],
-) -> Result<[Option<f64>; 2], CliError> {
-    let Some(of_file) = of_file else { return Ok(given) };
-    let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME_LENGTH;
+/// Sides of the cell of a map, and what was assumed about it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct CellOfMap {
+    /// Side along x (m), if it is known.
+    pub(crate) cell: Option<f64>,
+    /// Side along y (m). It is `None` for a square with as many points along y as along x.
+    pub(crate) cell_y: Option<f64>,
+    /// What neither the file nor the user says, one clause each.
+    pub(crate) assumed: Vec<String>,
+}
+
+impl CellOfMap {
+    /// The cell of a map in metres, whose sides are `given` or in its file.
+    ///
+    /// If both give sides, they must be equal, unless the file does not name their unit. Without a side along y,
+    /// spacings are equal along x and y.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when the two differ.
+    pub(crate) fn of(path: &Path, map: &HeightMap, given: [Option<f64>; 2]) -> Result<Self, CliError> {
+        let without_unit = map.notes.contains(&ReadNote::SidesAssumedMetres);
+        let wins = without_unit && given[0].is_some();
+        let notes = map.notes.iter().filter(|note| note.is_assumption());
+        let notes = notes.filter(|note| !(wins && **note == ReadNote::SidesAssumedMetres));
+        let assumed = notes.map(ToString::to_string).collect();
+        let grid = map.heights.grid();
+        let ([given_x, given_y], points) = (given, [grid.nx(), grid.ny()]);
+        let found = Self { assumed, ..Self::default() };
+        match map.sides {
+            Some(sides) if !wins => Ok(Self { assumed: found.assumed, ..Self::of_sides(path, sides, given, points)? }),
+            // The ratio of sides has no unit.
+            Some([x, y]) => Ok(found.with(given_x, given_y.or(given_x.map(|given| given * (y / x))), points)),
+            None => Ok(found.of_points(given_x, given_y, points)),
+        }
+    }
+
+    /// The cell of a map of nx and ny `points` with known sides (m), which those `given` must not contradict.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when they differ.
+    pub(crate) fn of_sides(
+        path: &Path,
+        sides: [f64; 2],
+        given: [Option<f64>; 2],
+        points: [usize; 2],
+    ) -> Result<Self, CliError> {
+        check_given(path, sides, given)?;
+        Ok(Self::default().with(Some(given[0].unwrap_or(sides[0])), Some(given[1].unwrap_or(sides[1])), points))
+    }
+
+    /// The cell of a map of nx and ny `points` of which only the given sides are known.
+    pub(crate) fn of_points(self, x: Option<f64>, y: Option<f64>, points: [usize; 2]) -> Self {
+        let [nx, ny] = points.map(|n| n as f64);
+        if let (Some(x), None, true) = (x, y, points[0] != points[1]) {
+            let mut equal = self.with(Some(x), Some(x * (ny / nx)), points);
+            equal.assumed.push(format!(
+                "equal spacings along x and y, so that the cell is {} by {}; --cell-y says otherwise",
+                engineering(x, "m"),
+                engineering(x * (ny / nx), "m")
+            ));
+            return equal;
+        }
+        self.with(x, y, points)
+    }
+
+    /// The same assumptions with these sides.
+    fn with(self, x: Option<f64>, y: Option<f64>, points: [usize; 2]) -> Self {
+        let is_square = points[0] == points[1] && x.zip(y).is_none_or(|(x, y)| same(x, y));
+        Self { cell: x, cell_y: if is_square { None } else { y }, ..self }
+    }
+}
+
+/// Whether two lengths are the same.
+fn same(a: f64, b: f64) -> bool {
+    (a / b - 1.0).abs() <= SAME_LENGTH
+}
+
+/// Refuses sides that contradict those of the file.
+fn check_given(path: &Path, of_file: [f64; 2], given: [Option<f64>; 2]) -> Result<(), CliError> {
     let length = |side: f64| engineering(side, "m");
     for ((given, side), (key, extent)) in given.iter().zip(of_file).zip([("cell", "wide"), ("cell_y", "high")]) {
         if let Some(given) = given.filter(|given| !same(*given, side)) {
@@ -83,8 +148,7 @@ pub(crate) fn sides(
             return Err(CliError::in_file(path, message));
         }
     }
-    let [x, y] = of_file;
-    Ok([Some(given[0].unwrap_or(x)), (!same(x, y)).then(|| given[1].unwrap_or(y))])
+    Ok(())
 }
 
 /// The heights of a map (m) in λ, on the grid of its points.
@@ -106,19 +170,42 @@ pub(crate) fn in_cell(path: &Path, map: Field, cell: PeriodicCell) -> Result<(Fi
 mod tests {
     use super::*;
 
+    fn map(nx: usize, ny: usize, sides: Option<[f64; 2]>) -> HeightMap {
+        HeightMap { sides, ..HeightMap::bare(Field::zeros(Grid::new(nx, ny).expect("a grid"))) }
+    }
+
     #[test]
     fn the_sides_are_those_of_the_file_and_must_not_be_contradicted() {
         let path = Path::new("map.sdf");
+        let cell = |map: &HeightMap, given| CellOfMap::of(path, map, given).map(|cell| [cell.cell, cell.cell_y]);
+        let square = |sides| map(4, 4, sides);
         let none = [None, None];
-        assert_eq!(sides(path, None, [Some(2.0), None]), Ok([Some(2.0), None]));
-        assert_eq!(sides(path, Some([1e-3, 1e-3]), none), Ok([Some(1e-3), None]));
-        assert_eq!(sides(path, Some([1e-3, 1.0005e-3]), [Some(1e-3), None]), Ok([Some(1e-3), None]));
-        assert_eq!(sides(path, Some([1e-3, 2e-3]), none), Ok([Some(1e-3), Some(2e-3)]));
-        assert_eq!(sides(path, Some([1e-3, 2e-3]), [None, Some(2e-3)]), Ok([Some(1e-3), Some(2e-3)]));
+        assert_eq!(cell(&square(None), [Some(2.0), None]), Ok([Some(2.0), None]));
+        assert_eq!(cell(&square(Some([1e-3, 1e-3])), none), Ok([Some(1e-3), None]));
+        assert_eq!(cell(&square(Some([1e-3, 1.0005e-3])), [Some(1e-3), None]), Ok([Some(1e-3), None]));
+        assert_eq!(cell(&square(Some([1e-3, 2e-3])), none), Ok([Some(1e-3), Some(2e-3)]));
+        assert_eq!(cell(&square(Some([1e-3, 2e-3])), [None, Some(2e-3)]), Ok([Some(1e-3), Some(2e-3)]));
+        // Without the side along y, a later reading would assume equal spacings.
+        assert_eq!(cell(&map(8, 4, Some([1e-3, 1e-3])), none), Ok([Some(1e-3), Some(1e-3)]));
         let contradictions = [([Some(2e-3), None], "cell says 2 mm"), ([None, Some(3e-3)], "cell_y says 3 mm")];
         for (given, expected) in contradictions {
-            let error = sides(path, Some([1e-3, 1e-3]), given).expect_err(expected).to_string();
+            let error = cell(&square(Some([1e-3, 1e-3])), given).expect_err(expected).to_string();
             assert!(error.contains(expected) && error.contains("map.sdf"), "{error}");
         }
+    }
+
+    #[test]
+    fn spacings_are_equal_where_nothing_says_otherwise() {
+        let of = |map: &HeightMap, given| CellOfMap::of(Path::new("map.npy"), map, given).expect("a cell");
+        let equal = of(&map(8, 4, None), [Some(2.0), None]);
+        assert_eq!((equal.cell, equal.cell_y), (Some(2.0), Some(1.0)));
+        assert!(equal.assumed[0].contains("equal spacings"), "{equal:?}");
+        assert_eq!(of(&map(8, 4, None), [Some(2.0), Some(3.0)]).assumed, Vec::<String>::new());
+        // Sides without a unit give only their ratio when the user gives the cell.
+        let unnamed = map(8, 4, Some([2.0, 3.0])).with_note(ReadNote::SidesAssumedMetres);
+        let given = of(&unnamed, [Some(4e-6), None]);
+        assert_eq!((given.cell, given.cell_y, given.assumed), (Some(4e-6), Some(6e-6), Vec::new()));
+        let assumed = of(&unnamed, [None, None]);
+        assert_eq!((assumed.cell, assumed.cell_y, assumed.assumed.len()), (Some(2.0), Some(3.0), 1));
     }
 }

@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
 use rc_core::Boundary;
 use rc_fractal::{Amplitudes, Truncation};
-use rc_heights::{Layout, LengthUnit, ReadParams, Scales};
+use rc_heights::{Layout, LengthUnit, Mask, ReadParams, Scales};
 use rc_solver::Method;
-use rc_sweep::memory::ByteSize;
+use rc_sweep::memory::{Budget, ByteSize, read_limit};
 use serde::{Deserialize, Serialize};
 
 use super::names::{amplitudes, boundaries, methods, truncations};
 use super::time_limit::TimeLimit;
-use super::values::{Fraction, GridSpec, ToleranceSpec};
+use super::values::{Fraction, GridSpec, Marks, ToleranceSpec};
 use crate::help;
 
 /// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4.
@@ -45,11 +45,23 @@ pub struct SurfaceKeys {
     /// Unit of lengths in a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]
     #[arg(long, value_name = "UNIT", help_heading = help::FILES)]
     pub unit: Option<LengthUnit>,
+    /// Unit of heights, where it differs from --unit
+    #[arg(long, value_name = "UNIT", help_heading = help::FILES)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub height_unit: Option<LengthUnit>,
     /// Height (m) of the value 1 in a file without a unit; overrides --unit
     ///
     /// In an image, 1 is one level of grey.
     #[arg(long, value_name = "M", help_heading = help::FILES, allow_hyphen_values = true)]
     pub height_scale: Option<f64>,
+    /// Values that mark missing points, in the numbers of the file: -9999, or -9999,1e30
+    #[arg(long, value_name = "VALUE[,VALUE]", help_heading = help::FILES, allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub missing: Option<Marks>,
+    /// Masked points of a .gwy file: use (they are missing) or ignore [default: use]
+    #[arg(long, value_name = "use|ignore", help_heading = help::FILES)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mask: Option<Mask>,
     /// Channel of a file with several [default: the first with heights]
     ///
     /// rc inspect lists the channels of a file.
@@ -94,6 +106,10 @@ pub struct SurfaceKeys {
     /// 512x256 is 512 along x and 256 along y.
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     pub grid: Option<GridSpec>,
+    /// Memory that reading a file may take. It is that of the run.
+    #[arg(skip)]
+    #[serde(skip)]
+    pub read_limit: Option<ByteSize>,
 }
 
 /// The elastic half-space, the load, and how the problem is solved.
@@ -203,6 +219,13 @@ pub struct RunKeys {
     #[arg(long)]
     #[serde(default)]
     pub quiet: bool,
+    /// A warning is an error: exit code 2
+    ///
+    /// What is known before the solve ends the command before it. A warning that only the solution shows leaves the
+    /// results written.
+    #[arg(long)]
+    #[serde(default)]
+    pub strict: bool,
     /// Print the results as JSON, also with --quiet
     #[arg(long)]
     #[serde(default)]
@@ -279,7 +302,8 @@ impl SurfaceKeys {
             lower = Self { cell: lower.cell, ..Self::default() };
         } else if self.generates() {
             lower = Self { heights: None, spectrum: None, unit: None, height_scale: None, cell_y: None, ..lower };
-            (lower.channel, lower.layout) = (None, None);
+            (lower.channel, lower.layout, lower.height_unit) = (None, None, None);
+            (lower.missing, lower.mask) = (None, None);
         }
         if self.cell.is_some() {
             lower.cell_y = None;
@@ -288,8 +312,8 @@ impl SurfaceKeys {
             (lower.rms, lower.rms_slope, lower.c0) = (None, None, None);
         }
         or_lower!(self, lower, {
-            cell, cell_y, heights, spectrum, unit, height_scale, channel, layout, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off,
-            low_cut, amplitudes, grid
+            cell, cell_y, heights, spectrum, unit, height_unit, height_scale, missing, mask, channel, layout, waves, hurst, rms, rms_slope,
+            c0, seed, truncation, roll_off, low_cut, amplitudes, grid, read_limit
         });
         self
     }
@@ -306,13 +330,26 @@ impl SurfaceKeys {
     /// The known units of a height map or of coefficients.
     #[must_use]
     pub fn scales(&self) -> Scales {
-        Scales { unit: self.unit, height_scale: self.height_scale }
+        Scales { unit: self.unit, height_unit: self.height_unit, height_scale: self.height_scale }
     }
 
-    /// The channel and the layout to read of a height map.
+    /// How a height map is read.
     #[must_use]
     pub fn read_params(&self) -> ReadParams {
-        ReadParams { channel: self.channel.clone(), layout: self.layout, ..ReadParams::default() }
+        ReadParams {
+            channel: self.channel.clone(),
+            layout: self.layout,
+            missing: self.missing.as_ref().map(|marks| marks.0.clone()).unwrap_or_default(),
+            mask: self.mask.unwrap_or_default(),
+            max_bytes: read_limit(self.read_limit),
+            max_plain_bytes: Budget::new(self.read_limit).available().unwrap_or(u64::MAX),
+        }
+    }
+
+    /// Whether any key says how a height map is read.
+    #[must_use]
+    pub fn reads_in_a_way(&self) -> bool {
+        self.channel.is_some() || self.layout.is_some() || self.missing.is_some() || self.mask.is_some()
     }
 
     /// Whether any parameter of a random surface is given.
@@ -352,12 +389,13 @@ impl ContactKeys {
 }
 
 impl RunKeys {
-    /// These keys laid over `lower`. `quiet` and `json` are set if either sets them.
+    /// These keys laid over `lower`. `quiet`, `json` and `strict` are set if either sets them.
     #[must_use]
     pub fn over(mut self, lower: Self) -> Self {
         or_lower!(self, lower, { out, threads, memory_limit, time_limit });
         self.quiet |= lower.quiet;
         self.json |= lower.json;
+        self.strict |= lower.strict;
         self
     }
 }

@@ -4,7 +4,7 @@
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use rc_core::quantity::digits;
 use rc_core::{Boundary, Field, Grid, HeightSource, PeriodicCell};
@@ -14,11 +14,14 @@ use rc_fractal::{
 use rc_heights::{HeightMap, ReadParams, Scales};
 
 use super::as_read::AsRead;
-use super::heights;
+use super::heights::{self, CellOfMap};
 use super::keys::SurfaceKeys;
 use super::values::GridSpec;
 use super::wave_file::{WAVES_FILE, WaveFile};
 use crate::error::CliError;
+use crate::files::names::HEIGHTS_FILE;
+use crate::warnings;
+use rc_sweep::Warning;
 
 /// A checked surface, before it is generated or read.
 #[derive(Clone, Debug)]
@@ -31,6 +34,10 @@ pub struct SurfaceSetup {
     pub may_be_flat: bool,
     /// The resolved keys, for `scene.toml`.
     pub keys: SurfaceKeys,
+    /// What was assumed about a map, one clause each.
+    pub assumed: Vec<String>,
+    /// The map of the file, which was read for its size. The first [`SurfaceSetup::load`] takes it.
+    pub(crate) held: Arc<Mutex<Option<HeightMap>>>,
 }
 
 /// Origin of the heights.
@@ -76,6 +83,10 @@ pub struct LoadedSurface {
     ///
     /// They include the grid, and a height map has the name of a result folder.
     pub keys: SurfaceKeys,
+    /// Doubts about the values of a map and what was assumed about it.
+    pub warnings: Vec<Warning>,
+    /// What the reader did, one line each.
+    pub notes: Vec<String>,
 }
 
 /// A surface as a sum of waves, or as a map.
@@ -94,28 +105,40 @@ pub enum Shape {
     },
 }
 
-/// Name of a height map in a result folder.
-pub const HEIGHTS_FILE: &str = "heights.npy";
-
 impl SurfaceKeys {
     /// The keys of a height map that a program holds.
     ///
-    /// `sides` are those of its cell (m) if the program knows them. The map has the name of a result folder.
+    /// `sides` are those of its cell (m) if the program knows them, and `points` its numbers of points along x and y.
+    /// The map has the name of a result folder. The second value is what was assumed.
     ///
     /// # Errors
     /// [`CliError::Input`] when keys of a random surface or of a file are given, or another size than that of the map.
-    pub fn of_map(self, sides: Option<[f64; 2]>) -> Result<Self, CliError> {
+    pub fn of_map(self, sides: Option<[f64; 2]>, points: [usize; 2]) -> Result<(Self, Vec<String>), CliError> {
         if self.heights.is_some() || self.generates() {
             let message =
                 "heights defines the surface; omit the parameters of a random surface (waves, hurst, rms, ...)";
             return Err(CliError::input(message));
         }
-        let [cell, cell_y] = heights::sides(Path::new("heights"), sides, [self.cell, self.cell_y])?;
-        Ok(Self { heights: Some(HEIGHTS_FILE.into()), cell, cell_y, ..self })
+        let CellOfMap { cell, cell_y, assumed } = match sides {
+            Some(sides) => CellOfMap::of_sides(Path::new("heights"), sides, [self.cell, self.cell_y], points)?,
+            None => CellOfMap::default().of_points(self.cell, self.cell_y, points),
+        };
+        Ok((Self { heights: Some(HEIGHTS_FILE.into()), cell, cell_y, ..self }, assumed))
     }
 }
 
 impl SurfaceSetup {
+    /// A surface that is not flat, about which nothing was assumed.
+    pub(crate) fn new(cell: PeriodicCell, source: Source, keys: SurfaceKeys) -> Self {
+        Self { cell, source, may_be_flat: false, keys, assumed: Vec::new(), held: Arc::default() }
+    }
+
+    /// The setup without the map that was read for its size, for programs with many maps.
+    pub(crate) fn without_map(mut self) -> Self {
+        self.held = Arc::default();
+        self
+    }
+
     /// Number of elements of the finest grid.
     ///
     /// For a height map it is an upper bound from the length of its file.
@@ -137,15 +160,19 @@ impl SurfaceSetup {
     pub fn load(&self) -> Result<LoadedSurface, CliError> {
         match &self.source {
             Source::File { path, expected, params, scales } => {
-                self.of_map(path, heights::read(path, params, *scales)?, *expected)
+                let held = self.held.lock().unwrap_or_else(PoisonError::into_inner).take();
+                let map = held.map_or_else(|| heights::read(path, params, *scales), Ok)?;
+                let mut surface = self.of_map(path, map, *expected)?;
+                surface.warnings.extend(warnings::surface::of_record(path));
+                Ok(surface)
             }
             Source::Random { spectrum, grid } => {
                 let surface = Surface::new(spectrum).map_err(CliError::input)?;
-                Ok(LoadedSurface { shape: Shape::Random(Arc::new(surface)), grid: *grid, keys: self.keys.clone() })
+                Ok(LoadedSurface::of_waves(Shape::Random(Arc::new(surface)), *grid, self.keys.clone()))
             }
             Source::Waves { waves, grid, .. } => {
                 let keys = SurfaceKeys { spectrum: Some(WAVES_FILE.into()), ..self.keys.clone() };
-                Ok(LoadedSurface { shape: Shape::Waves(Arc::clone(waves)), grid: *grid, keys })
+                Ok(LoadedSurface::of_waves(Shape::Waves(Arc::clone(waves)), *grid, keys))
             }
         }
     }
@@ -156,8 +183,11 @@ impl SurfaceSetup {
     /// [`CliError::Input`] when points are missing, when the map is flat, or when its grid or size differs from the
     /// scene's.
     pub fn of_map(&self, path: &Path, map: HeightMap, expected: Option<Grid>) -> Result<LoadedSurface, CliError> {
-        heights::sides(path, map.sides, [Some(self.cell.side()), self.keys.cell_y])?;
+        CellOfMap::of(path, &map, [Some(self.cell.side()), self.keys.cell_y])?;
         heights::check_heights(path, &map.heights, &self.keys.read_params())?;
+        let mut warnings = warnings::surface::of_map(&map);
+        warnings.extend(warnings::surface::assumed(&self.assumed));
+        let notes = map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
         let range = [map.heights.min(), map.heights.max()];
         let (heights, as_read) = heights::in_cell(path, map.heights, self.cell)?;
         let grid = heights.grid();
@@ -178,14 +208,17 @@ impl SurfaceSetup {
         let keys = SurfaceKeys {
             heights: Some(HEIGHTS_FILE.into()),
             unit: None,
+            height_unit: None,
             height_scale: None,
+            missing: None,
+            mask: None,
             channel: None,
             layout: None,
             grid: Some(spec),
             ..self.keys.clone()
         };
         let shape = Shape::Map { heights: Arc::new(heights), as_read };
-        Ok(LoadedSurface { shape, grid, keys })
+        Ok(LoadedSurface { shape, grid, keys, warnings, notes })
     }
 }
 
@@ -201,6 +234,11 @@ impl Shape {
 }
 
 impl LoadedSurface {
+    /// A surface of waves.
+    fn of_waves(shape: Shape, grid: Grid, keys: SurfaceKeys) -> Self {
+        Self { shape, grid, keys, warnings: Vec::new(), notes: Vec::new() }
+    }
+
     /// Heights on the finest grid, in λ.
     ///
     /// Those of a sum of waves are evaluated now, with 8 bytes each.

@@ -75,6 +75,42 @@ impl<'de> Deserialize<'de> for GridSpec {
     }
 }
 
+/// Values that mark missing points in their written form: `-9999`, or `-9999,1e30`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Marks(pub Vec<f64>);
+
+impl fmt::Display for Marks {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.iter().map(f64::to_string).collect::<Vec<_>>().join(","))
+    }
+}
+
+impl FromStr for Marks {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mark = |word: &str| {
+            let number = word.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+            number.ok_or_else(|| {
+                format!("marks of missing points are numbers such as -9999, or -9999,1e30, not '{text}'")
+            })
+        };
+        text.split(',').map(mark).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+impl Serialize for Marks {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Marks {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        number_or_text(deserializer, "a number such as -9999, or \"-9999,1e30\"")
+    }
+}
+
 /// The tolerance in its written form: a number or `auto`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ToleranceSpec {
@@ -161,6 +197,15 @@ mod tests {
         }
         for text in ["", "%", "0", "1", "100%", "-1%", "nan", "inf%", "x"] {
             assert!(text.parse::<Fraction>().is_err(), "'{text}' was read as a fraction");
+        }
+    }
+
+    #[test]
+    fn marks_are_numbers_with_commas_between_them() {
+        assert_eq!("-9999, 1e30".parse(), Ok(Marks(vec![-9999.0, 1e30])));
+        assert_eq!(Marks(vec![-9999.0, 0.5]).to_string(), "-9999,0.5");
+        for text in ["", "x", "1,,2", "inf"] {
+            assert!(text.parse::<Marks>().is_err(), "'{text}' was read as marks");
         }
     }
 

@@ -37,14 +37,18 @@ impl CheckedScene {
 
     /// Checks the keys for a height map that a program holds.
     ///
-    /// The map has the sides `sides` (m), or those of the keys.
+    /// The map has `points` along x and y and the sides `sides` (m), or those of the keys.
     ///
     /// # Errors
     /// [`CliError::Input`].
-    pub fn of_map(surface: SurfaceKeys, sides: Option<[f64; 2]>, contact: ContactKeys) -> Result<Self, CliError> {
-        let surface = surface.of_map(sides)?;
+    pub fn of_map(
+        surface: SurfaceKeys,
+        (sides, points): (Option<[f64; 2]>, [usize; 2]),
+        contact: ContactKeys,
+    ) -> Result<Self, CliError> {
+        let (surface, assumed) = surface.of_map(sides, points)?;
         resolve::check_cell_and_material(&surface, &contact)?;
-        Self::with_surface(contact, true, || resolve::surface_in_cell(surface))
+        Self::with_surface(contact, true, || Ok(SurfaceSetup { assumed, ..resolve::surface_in_cell(surface)? }))
     }
 
     fn with_surface(
@@ -67,7 +71,7 @@ impl CheckedScene {
             }
         };
         let mut surface = surface()?;
-        let contact = resolve::contact(contact, surface.cell)?;
+        let contact = ContactSetup { grid_is_chosen: area_error.is_some(), ..resolve::contact(contact, surface.cell)? };
         surface.may_be_flat = contact.boundary == Boundary::Free;
         Ok(Self { surface, contact, area_error })
     }

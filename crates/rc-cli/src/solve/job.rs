@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use rc_comm::Ranks;
 use rc_sweep::memory::Budget;
-use rc_sweep::{Summary, files};
+use rc_sweep::{Summary, Warning, files};
 
 use super::checked::CheckedScene;
 use super::dry_run;
@@ -17,6 +17,7 @@ use crate::run::threads;
 use crate::run::together::together;
 use crate::run::watch::Watch;
 use crate::scene::keys::{RunKeys, Scene};
+use crate::warnings::shown;
 use crate::{terminal, text};
 
 /// A resolved scene, and how it is run.
@@ -55,6 +56,7 @@ impl Job {
     pub(super) fn dry_run(&self) -> Result<(), CliError> {
         let (kernel, surface) = (self.scene.contact.kernel()?, self.scene.surface.load()?);
         let problem = self.scene.problem(&surface, &*kernel, self.budget());
+        self.doubt(&problem.warnings())?;
         dry_run::run(&problem, self.threads, &self.run)
     }
 
@@ -93,8 +95,18 @@ impl Job {
         let kernel = self.scene.contact.kernel()?;
         let surface = together(ranks, self.scene.surface.load())?;
         let problem = self.scene.problem(&surface, &*kernel, self.budget());
+        progress.hidden(|| self.doubt(&problem.warnings()))?;
         let solved = self.scene.solve(problem, self.started, &progress)?;
         self.finish(&solved, progress)
+    }
+
+    /// Prints what is doubtful before the solve, or refuses it with `--strict`.
+    fn doubt(&self, warnings: &[Warning]) -> Result<(), CliError> {
+        shown::refuse(warnings, self.run.strict, "; nothing was solved or written")?;
+        if self.ranks().rank() == 0 {
+            shown::tell(warnings, &self.run);
+        }
+        Ok(())
     }
 
     /// The ranks that solve the problem together.
@@ -126,7 +138,14 @@ impl Job {
         // The bar must vanish before anything is printed. The picture of --watch must stay until the result exists.
         drop(progress);
         self.print(&summary)?;
-        let Some(failure) = solved.failure() else { return Ok(()) };
+        // Warnings from before the solve are first in the summary, and are printed already.
+        let late = &summary.warnings[solved.n_early_warnings()..];
+        if self.ranks().rank() == 0 {
+            shown::tell(late, &self.run);
+        }
+        let written = if self.run.out.is_some() { "; the results are written" } else { "" };
+        let doubted = together(self.ranks(), shown::refuse(late, self.run.strict, written));
+        let Some(failure) = solved.failure() else { return doubted };
         let written = if self.run.out.is_some() { "; the results are written and marked not_converged" } else { "" };
         Err(match stopped {
             Some(Reason::Interrupted) => CliError::Interrupted(format!("interrupted: {}{written}", failure.what)),

@@ -11,21 +11,22 @@ use rc_heights::spectrum;
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution};
 use rc_sweep::files::{FileError, Staged};
-use rc_sweep::{SolveContext, Summary};
+use rc_sweep::{SolveContext, Summary, Warning};
 
 use super::leakage::SolvedFlow;
 use super::map_file::MapFile;
 use super::{flow_files, shared_fields};
 use crate::error::CliError;
 use crate::export::xarray;
+use crate::files::names::{HEIGHTS_FILE, SCENE_FILE};
 use crate::files::result::{PLASTIC_GAP_FILE, SUMMARY_FILE};
 use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
 use crate::scene::resolve::ContactSetup;
-use crate::scene::surface::HEIGHTS_FILE;
 use crate::scene::values::GridSpec;
 use crate::scene::wave_file::{WAVES_FILE, WaveFile};
+use crate::warnings::result::after;
 
 /// A solution with the data that its summary and its files need.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +43,8 @@ pub struct ResultFiles<'a> {
     pub solution: &'a Solution<'a>,
     /// The flow through the gap, if it was asked for.
     pub flow: Option<&'a SolvedFlow>,
+    /// The warnings that were known before the solve.
+    pub warnings: &'a [Warning],
 }
 
 /// The heights of a map.
@@ -66,7 +69,8 @@ pub enum MapHeights<'a> {
 impl ResultFiles<'_> {
     /// The summary in SI units.
     ///
-    /// It needs the surface's rms height (λ) and rms slope, the time `wall` and the number `threads`.
+    /// It needs the surface's rms height (λ) and rms slope, the time `wall` and the number `threads`. Ranks call this
+    /// together.
     #[must_use]
     pub fn summary(&self, [rms_height, rms_slope]: [f64; 2], wall: Duration, threads: usize) -> Summary {
         let context = SolveContext {
@@ -81,7 +85,9 @@ impl ResultFiles<'_> {
         let summary = Summary::of(self.solution, self.contact.units, &context);
         // Only on a half-space are conduction and stiffness the same problem.
         let contact_conductance = summary.contact_conductance.filter(|_| self.contact.layer.is_none());
-        Summary { leakage, contact_conductance, ..summary }
+        let mut warnings = self.warnings.to_vec();
+        warnings.extend(after(self.solution, self.contact, self.surface.heights.is_some()));
+        Summary { leakage, contact_conductance, warnings, ..summary }
     }
 
     /// Writes the result folder.
@@ -138,7 +144,7 @@ impl ResultFiles<'_> {
         if let Some(waves) = self.waves {
             staged.add(WAVES_FILE, |path| spectrum::write(path, waves.coefficients()))?;
         }
-        staged.add_text("scene.toml", &self.scene())?;
+        staged.add_text(SCENE_FILE, &self.scene())?;
         staged.add_text(SUMMARY_FILE, &summary.to_json())?;
         staged.commit()
     }

@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use rc_core::{Kernel, Observer};
 use rc_solver::{ContactProblem, Cost, Plan, Solution, SolveError, SolveParams};
-use rc_sweep::Summary;
 use rc_sweep::memory::Budget;
+use rc_sweep::{Summary, Warning};
 
 use super::failure::Failure;
 use super::leakage::SolvedFlow;
@@ -19,6 +19,7 @@ use crate::files::coarsen::check_factor;
 use crate::scene::resolve::{self, ContactSetup, Place};
 use crate::scene::surface::LoadedSurface;
 use crate::scene::values::Fraction;
+use crate::warnings;
 
 /// A problem: a surface, a contact, and the available memory.
 #[derive(Clone, Copy)]
@@ -40,6 +41,8 @@ pub struct Solved<'a> {
     failure: Option<Failure>,
     /// The flow through the gap, if it was asked for.
     flow: Option<SolvedFlow>,
+    /// The warnings that were known before the solve.
+    warnings: Vec<Warning>,
     wall: Duration,
 }
 
@@ -52,6 +55,8 @@ pub struct SolvedParts<'a> {
     pub failure: Option<Failure>,
     /// The flow through the gap, if it was asked for and converged.
     pub flow: Option<SolvedFlow>,
+    /// The warnings that were known before the solve.
+    pub warnings: Vec<Warning>,
     /// Time to the certified solution.
     pub wall: Duration,
 }
@@ -139,6 +144,12 @@ impl<'a> ProblemSetup<'a> {
         self.solved(result, started)
     }
 
+    /// The warnings that are known before the solve.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<Warning> {
+        warnings::contact::before(self.surface, self.contact)
+    }
+
     /// The cost of the solve by `plan`, with the flow if it is asked for.
     pub(crate) fn cost(&self, plan: &Plan<'_>) -> Cost {
         let cost = plan.cost();
@@ -204,7 +215,7 @@ impl<'a> ProblemSetup<'a> {
             }
             None => (None, failure),
         };
-        Ok(Solved { problem: self, solution, failure, flow, wall })
+        Ok(Solved { problem: self, solution, failure, flow, warnings: self.warnings(), wall })
     }
 
     fn refuse(&self, error: &SolveError) -> CliError {
@@ -216,8 +227,13 @@ impl<'a> Solved<'a> {
     /// The parts of the solution, without the problem.
     #[must_use]
     pub fn into_parts(self) -> SolvedParts<'a> {
-        let Self { solution, failure, flow, wall, .. } = self;
-        SolvedParts { solution, failure, flow, wall }
+        let Self { solution, failure, flow, warnings, wall, .. } = self;
+        SolvedParts { solution, failure, flow, warnings, wall }
+    }
+
+    /// Number of warnings that were known before the solve.
+    pub(crate) fn n_early_warnings(&self) -> usize {
+        self.warnings.len()
     }
 
     /// What did not converge, if anything.
@@ -257,7 +273,8 @@ impl<'a> Solved<'a> {
         let ProblemSetup { surface, contact, .. } = self.problem;
         let map = surface.map().map(|(heights, as_read)| MapHeights::InCell { heights, as_read });
         let waves = surface.wave_file().map(AsRef::as_ref);
-        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution, flow: self.flow.as_ref() }
+        let (flow, warnings) = (self.flow.as_ref(), &self.warnings[..]);
+        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution, flow, warnings }
     }
 }
 

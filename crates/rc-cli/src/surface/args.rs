@@ -12,7 +12,7 @@ use crate::scene::keys::{RunKeys, SurfaceKeys};
 #[command(after_help = SURFACE_HELP)]
 // Only solves have a time limit.
 #[command(mut_arg("time_limit", |limit| limit.hide(true)))]
-#[command(mut_arg("out", |out| out.value_name("DIR|FILE").help("Folder, or FILE.npy or FILE.csv; without it nothing is written")))]
+#[command(mut_arg("out", |out| out.value_name("DIR|FILE").help("Folder, or FILE.npy, .csv, .gsf or .nc; without it nothing is written")))]
 pub(crate) struct SurfaceArgs {
     /// Scene file; its keys of the contact are ignored
     #[arg(value_name = "SCENE.toml")]
@@ -29,8 +29,8 @@ pub(crate) struct SurfaceArgs {
 }
 
 const SURFACE_HELP: &str = "\
---out DIR receives heights.npy (m), scene.toml, surface.png and surface.json. --out FILE.npy or FILE.csv receives the heights \
-alone (m).
+--out DIR receives heights.npy (m), scene.toml, surface.png and surface.json. --out FILE.npy, .csv, .gsf or .nc receives the \
+heights alone (m); .gsf and .nc carry the size too.
 
-Most measured maps need --crop square --fill laplace --level plane --periodic mirror. What each treatment changes is printed \
+Most measured maps need --crop square --level plane --fill laplace --periodic mirror. What each treatment changes is printed \
 and goes into surface.json.";

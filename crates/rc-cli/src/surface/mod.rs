@@ -11,7 +11,7 @@ use std::path::Path;
 
 use rc_heights::{Effect, Treatment};
 use rc_sweep::memory::Budget;
-use rc_sweep::{files, to_json};
+use rc_sweep::{Warning, files, to_json};
 
 use self::args::SurfaceArgs;
 use self::surface_files::{is_map, write_folder, write_map};
@@ -19,9 +19,12 @@ use crate::error::CliError;
 use crate::inspect::record::{SurfaceRecord, TreatmentRow};
 use crate::inspect::text::heights as lines;
 use crate::run::threads;
+use crate::scene::heights::CellOfMap;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene, SurfaceKeys};
 use crate::scene::surface::LoadedSurface;
 use crate::scene::{heights, resolve};
+use crate::warnings::shown::{refuse, tell};
+use crate::warnings::surface as doubts;
 use crate::{terminal, text};
 
 /// A surface in its cell, with the effects of its treatments.
@@ -31,6 +34,10 @@ struct Prepared {
     side: f64,
     /// Statistics of a height map before the treatments and after each; empty without treatments.
     effects: Vec<Effect>,
+    /// Doubts about the map as read, and about its treatments.
+    warnings: Vec<Warning>,
+    /// What the reader of the map did.
+    notes: Vec<String>,
 }
 
 /// Runs `rc surface`.
@@ -56,10 +63,14 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
 }
 
 /// Writes and prints the surface.
-fn write(Prepared { surface, side, effects }: &Prepared, run: &RunKeys) -> Result<(), CliError> {
+fn write(Prepared { surface, side, effects, warnings, notes }: &Prepared, run: &RunKeys) -> Result<(), CliError> {
     let heights = surface.heights()?;
     let mut record = SurfaceRecord::of(&heights, *side, surface.moments());
     record.treatments = effects.iter().map(TreatmentRow::from).collect();
+    record.notes.clone_from(notes);
+    record.warnings = [&warnings[..], &record.shape().warnings()].concat();
+    refuse(&record.warnings, run.strict, "; nothing was written")?;
+    tell(&record.warnings, run);
     let target = run.out.as_deref();
     match target {
         Some(target) if is_map(target) => write_map(target, surface, &heights, *side)?,
@@ -76,7 +87,9 @@ fn write(Prepared { surface, side, effects }: &Prepared, run: &RunKeys) -> Resul
 fn untreated(keys: SurfaceKeys) -> Result<Prepared, CliError> {
     resolve::check_size(&keys)?;
     let setup = resolve::surface(keys)?;
-    Ok(Prepared { surface: setup.load()?, side: setup.cell.side(), effects: Vec::new() })
+    let mut surface = setup.load()?;
+    let (warnings, notes) = (std::mem::take(&mut surface.warnings), std::mem::take(&mut surface.notes));
+    Ok(Prepared { surface, side: setup.cell.side(), effects: Vec::new(), warnings, notes })
 }
 
 /// A height map after `treatments`.
@@ -88,10 +101,12 @@ fn treated(keys: SurfaceKeys, treatments: &[Treatment], budget: Budget) -> Resul
     };
     resolve::check_size(&keys)?;
     let mut map = heights::read(&path, &keys.read_params(), keys.scales())?;
-    let [cell, cell_y] = heights::sides(&path, map.sides, [keys.cell, keys.cell_y])?;
-    // The points of a map without a size have equal distances along both sides.
-    let sides = |cell| cell_y.map_or_else(|| map.sides_of_width(cell), |cell_y| [cell, cell_y]);
-    map.sides = map.sides.or_else(|| cell.map(sides));
+    let CellOfMap { cell, cell_y, assumed } = CellOfMap::of(&path, &map, [keys.cell, keys.cell_y])?;
+    let mut warnings = doubts::of_map(&map);
+    warnings.extend(doubts::assumed(&assumed));
+    let notes = map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
+    map.sides = cell.map(|cell| [cell, cell_y.unwrap_or(cell)]);
+    map.notes.clear();
     let grids = rc_heights::grids_after(&map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
     for (grid, treatment) in grids.into_iter().zip(treatments) {
         budget.check_grid(&format!("the map after {treatment}"), grid)?;
@@ -99,8 +114,17 @@ fn treated(keys: SurfaceKeys, treatments: &[Treatment], budget: Budget) -> Resul
     let mut effects = vec![Effect::of(&map, "as read")];
     let (map, after) = rc_heights::apply(map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
     effects.extend(after);
-    let [cell, cell_y] = heights::sides(&path, map.sides, [None, None])?;
+    warnings.extend(filled(treatments, &effects));
+    let CellOfMap { cell, cell_y, .. } = CellOfMap::of(&path, &map, [None, None])?;
     let expected = keys.grid.map(resolve::checked_grid).transpose()?;
     let setup = resolve::surface_in_cell(SurfaceKeys { cell, cell_y, grid: None, ..keys })?;
-    Ok(Prepared { surface: setup.of_map(&path, map, expected)?, side: setup.cell.side(), effects })
+    Ok(Prepared { surface: setup.of_map(&path, map, expected)?, side: setup.cell.side(), effects, warnings, notes })
+}
+
+/// A doubt about the points that a treatment has filled.
+fn filled(treatments: &[Treatment], effects: &[Effect]) -> Option<Warning> {
+    let at = treatments.iter().position(|treatment| matches!(treatment, Treatment::Fill(_)))?;
+    // The first state is that before all treatments.
+    let before = effects.get(at)?;
+    doubts::filled(before.missing, before.grid.len())
 }

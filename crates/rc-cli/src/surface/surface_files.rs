@@ -4,19 +4,38 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use rc_core::Field;
-use rc_heights::{npy, spectrum, text};
+use rc_heights::{gsf, netcdf, npy, spectrum, text};
 use rc_plot::{Map, MapPicture, Palette, Shade, save_png};
 use rc_sweep::files::{self, FileError, Staged};
 use rc_sweep::to_json;
 
+use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SCENE_FILE};
 use crate::inspect::record::SurfaceRecord;
 use crate::scene::file;
-use crate::scene::surface::{HEIGHTS_FILE, LoadedSurface};
+use crate::scene::surface::LoadedSurface;
 use crate::scene::wave_file::WAVES_FILE;
+
+/// A format of the heights alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum MapFormat {
+    Npy,
+    Csv,
+    Gsf,
+    NetCdf,
+}
+
+impl MapFormat {
+    /// The format that the name of a file asks for; `None` for a folder.
+    fn of(target: &Path) -> Option<Self> {
+        let formats = [("npy", Self::Npy), ("csv", Self::Csv), ("gsf", Self::Gsf), ("nc", Self::NetCdf)];
+        let extension = target.extension()?;
+        formats.into_iter().find(|(name, _)| extension.eq_ignore_ascii_case(name)).map(|(_, format)| format)
+    }
+}
 
 /// Whether `target` is the name of a file for the heights alone.
 pub(super) fn is_map(target: &Path) -> bool {
-    target.extension().is_some_and(|e| e.eq_ignore_ascii_case("npy") || e.eq_ignore_ascii_case("csv"))
+    MapFormat::of(target).is_some()
 }
 
 /// Heights, and the factor that makes them metres.
@@ -39,9 +58,13 @@ fn in_metres<'a>(surface: &LoadedSurface, heights: &'a Field, side: f64) -> (Cow
 /// [`FileError::Write`].
 pub(super) fn write_map(target: &Path, surface: &LoadedSurface, heights: &Field, side: f64) -> Result<(), FileError> {
     let (field, factor) = in_metres(surface, heights, side);
-    let csv = target.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-    let write = if csv { text::write } else { npy::write };
-    files::write_file(target, |path| write(path, &field, factor))
+    let sides = [side, side * heights.grid().cell_ratio()];
+    files::write_file(target, |path| match MapFormat::of(target) {
+        Some(MapFormat::Csv) => text::write(path, &field, factor),
+        Some(MapFormat::Gsf) => gsf::write(path, &field, factor, sides),
+        Some(MapFormat::NetCdf) => netcdf::write(path, &field, factor, sides),
+        Some(MapFormat::Npy) | None => npy::write(path, &field, factor),
+    })
 }
 
 /// Writes the folder of a surface, which `rc solve` can solve.
@@ -71,7 +94,7 @@ pub(super) fn write_folder(
         staged.add(WAVES_FILE, |path| spectrum::write(path, waves.coefficients()))?;
     }
     staged.add("surface.png", |path| save_png(&picture, path))?;
-    staged.add_text("scene.toml", &scene)?;
-    staged.add_text("surface.json", &to_json(record))?;
+    staged.add_text(SCENE_FILE, &scene)?;
+    staged.add_text(RECORD_FILE, &to_json(record))?;
     staged.commit()
 }

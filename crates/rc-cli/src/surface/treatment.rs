@@ -20,12 +20,12 @@ pub(crate) struct TreatmentKeys {
     /// Mirror along axes: x, y, z (peaks become valleys, for replicas), or x,z
     #[arg(long, value_name = "AXES", value_delimiter = ',')]
     pub(crate) flip: Vec<Flip>,
+    /// Subtract a form, fitted to measured points by least squares: mean, plane or quadratic
+    #[arg(long, value_name = "FORM")]
+    pub(crate) level: Option<Level>,
     /// Fill missing points: laplace (a membrane through measured points), nearest, or lowest
     #[arg(long, value_name = "HOW")]
     pub(crate) fill: Option<Fill>,
-    /// Subtract a form, fitted by least squares: mean, plane or quadratic
-    #[arg(long, value_name = "FORM")]
-    pub(crate) level: Option<Level>,
     /// Make opposite borders meet: mirror (twice the side), window, or as-is (they meet already)
     ///
     /// mirror has four times the points on twice the side; slopes change sign at the seams. With window, heights fade
@@ -89,8 +89,9 @@ impl TreatmentKeys {
         let mut treatments = Vec::new();
         treatments.extend(self.crop.map(Treatment::Crop));
         treatments.extend(self.flip.iter().copied().map(Treatment::Flip));
-        treatments.extend(self.fill.map(Treatment::Fill));
+        // The form is that of the measured points alone. Filled points then follow it.
         treatments.extend(self.level.map(Treatment::Level));
+        treatments.extend(self.fill.map(Treatment::Fill));
         treatments.extend(self.periodic.map(periodic).map(Treatment::Periodic));
         treatments.extend(self.low_pass.map(|wavelength| Treatment::LowPass { wavelength }));
         treatments.extend(resample.map(Treatment::Resample));

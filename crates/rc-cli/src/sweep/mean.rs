@@ -12,6 +12,7 @@ use rc_sweep::{ControlKind, Ensemble, EnsembleLevel, EnsembleMean, EnsemblePlan,
 
 use super::args::SweepArgs;
 use super::bar::RowBar;
+use super::doubts::{Doubts, refuse_early};
 use super::interrupt;
 use super::messages;
 use super::realisations::Realisations;
@@ -38,6 +39,7 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
     let folder = run.out.clone().ok_or_else(missing)?;
     let (surface, control) = (surfaces.only()?, surfaces.control());
     let plan = plan(surface, control)?;
+    refuse_early(&surfaces)?;
     let threads = surfaces.threads;
     let started = Instant::now();
     let ensemble = Arc::new(Ensemble::start(plan, &folder, args.resume)?);
@@ -45,7 +47,8 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
     let bar = RowBar::new(n_before, n_before, run.quiet);
     let handled = (Arc::clone(&ensemble), bar.clone());
     interrupt::install(move || interrupt::end(&handled.0.kept(), None, &handled.1));
-    let rows = Realisations::new(surface, control, (threads, run), bar.clone());
+    let doubts = Doubts::default();
+    let rows = Realisations::new(surface, (control, threads), (run, &doubts), bar.clone());
     let budget = Budget::new(run.memory_limit);
     let factor = surface.memory_factor();
     let workers = |elements: f64| Workers { threads, at_once: budget.solves_at_once(factor * elements) };
@@ -71,7 +74,8 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
             ))?;
         }
     }
-    messages::check_means(&means)
+    let doubted = doubts.tell(run);
+    messages::check_means(&means).and(doubted)
 }
 
 /// Refuses flags that select the rows in another way.

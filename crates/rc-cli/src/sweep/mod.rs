@@ -2,8 +2,10 @@
 
 pub(crate) mod args;
 mod bar;
+mod doubts;
 mod interrupt;
 mod list;
+mod map_mark;
 mod mean;
 mod merge;
 mod messages;
@@ -14,8 +16,9 @@ mod rows;
 mod specs;
 mod surfaces;
 
+pub use map_mark::MapMark;
 pub(crate) use mean::MEAN_FILE;
-pub use planned::{MapMark, SweepLists, plan};
+pub use planned::{SweepLists, plan};
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -26,6 +29,7 @@ use rc_sweep::{Shard, Sweep, Workers, to_json};
 
 use self::args::{SweepArgs, SweepCommand};
 use self::bar::RowBar;
+use self::doubts::Doubts;
 use self::rows::SceneRows;
 use self::surfaces::Surfaces;
 use crate::error::CliError;
@@ -53,6 +57,7 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     }
     let (shard, folder) = part::resolve(args.shard, &folder)?;
     plan.check_shard(shard)?;
+    doubts::refuse_early(&surfaces)?;
     let sweep = Sweep::start(part::deal(plan, shard, &surfaces), shard, &folder, args.resume)?;
     execute(&surfaces, &Arc::new(sweep))
 }
@@ -65,7 +70,8 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
     let bar = RowBar::new(n_before, n_rows, surfaces.run.quiet);
     let handled = (Arc::clone(sweep), bar.clone());
     interrupt::install(move || interrupt::end(&handled.0.kept(), Some(n_rows), &handled.1));
-    let rows = SceneRows::new(sweep, surfaces, threads, bar.clone());
+    let doubts = Doubts::default();
+    let rows = SceneRows::new(sweep, surfaces, (threads, &doubts), bar.clone());
     let at_once = Budget::new(surfaces.run.memory_limit).solves_at_once(surfaces.max_elements());
     let finished = sweep.run(&rows, Workers { threads, at_once });
     bar.clear();
@@ -91,7 +97,8 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
     if let (missing @ 1.., Some(limit)) = (n_rows - kept.rows().len(), surfaces.run.time_limit) {
         return Err(messages::out_of_time(limit, missing, n_rows));
     }
-    messages::check_converged(kept.rows(), &table)
+    let doubted = doubts.tell(&surfaces.run);
+    messages::check_converged(kept.rows(), &table).and(doubted)
 }
 
 #[cfg(test)]
@@ -118,9 +125,10 @@ mod tests {
         let plan = surfaces.plan().expect("a plan");
         let sweep = Sweep::start(plan, Shard::WHOLE, &out, false).expect("a sweep");
         let row = sweep.plan().row(0);
+        let doubts = Doubts::default();
         let mut contact = surfaces.contact(&row).expect("a contact");
         contact.params.max_iterations = 1;
-        let rows = SceneRows::new(&sweep, &surfaces, 1, RowBar::new(0, 2, true));
+        let rows = SceneRows::new(&sweep, &surfaces, (1, &doubts), RowBar::new(0, 2, true));
         let cells = rows.solve_contact(&row, &contact).expect("cells, not an error");
         assert_eq!(cells["status"], json!("not_converged"));
         sweep.keep(&row, cells).expect("a row");

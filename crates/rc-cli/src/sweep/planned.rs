@@ -2,8 +2,9 @@
 //!
 //! It is the plan of `rc sweep`, so that each can continue the rows of the other.
 
-use rc_sweep::{ControlKind, FileMark, Loads, Seeds, SweepPlan};
+use rc_sweep::{ControlKind, Loads, Seeds, SweepPlan};
 
+use super::map_mark::MapMark;
 use super::surfaces::{SweptSurface, check_rows, seeded};
 use crate::error::CliError;
 use crate::scene::keys::Scene;
@@ -19,15 +20,6 @@ pub struct SweepLists {
     pub seeds: Option<Seeds>,
 }
 
-/// Size and mark of a height map that a program holds.
-#[derive(Clone, Copy, Debug)]
-pub struct MapMark {
-    /// Sides of its cell along x and y (m), if the program knows them.
-    pub sides: Option<[f64; 2]>,
-    /// Mark that identifies the map.
-    pub mark: FileMark,
-}
-
 /// The plan of `rc sweep` for a scene with the name `name`.
 ///
 /// `map` describes a map that a program holds.
@@ -38,7 +30,7 @@ pub fn plan(name: &str, scene: &Scene, lists: &SweepLists, map: Option<MapMark>)
     let SweepLists { control, loads: Loads(loads), seeds } = lists;
     check_rows(1, seeds.as_ref(), loads.len())?;
     let surface = |scene: Scene| match map {
-        Some(MapMark { sides, mark }) => SweptSurface::of_map(name, scene, (*control, loads), (sides, mark)),
+        Some(map) => SweptSurface::of_map(name, scene, (*control, loads), map),
         None => SweptSurface::new(name, scene, *control, loads),
     };
     let scenes = seeded(seeds.as_ref(), name, scene)?;

@@ -9,6 +9,7 @@ use rc_sweep::memory::Budget;
 use rc_sweep::{Cells, ControlKind, Realisation, RowError, RowSolver};
 
 use super::bar::RowBar;
+use super::doubts::Doubts;
 use super::surfaces::SweptSurface;
 use crate::error::CliError;
 use crate::run::stop::Stop;
@@ -24,6 +25,7 @@ pub(super) struct Realisations<'a> {
     /// Number of all threads.
     threads: usize,
     run: &'a RunKeys,
+    doubts: &'a Doubts,
     limit: Stop,
     bar: RowBar,
 }
@@ -32,11 +34,11 @@ impl<'a> Realisations<'a> {
     /// The realisations of `surface`. Their time limit begins now.
     pub(super) fn new(
         surface: &'a SweptSurface,
-        control: ControlKind,
-        (threads, run): (usize, &'a RunKeys),
+        (control, threads): (ControlKind, usize),
+        (run, doubts): (&'a RunKeys, &'a Doubts),
         bar: RowBar,
     ) -> Self {
-        Self { surface, control, threads, run, limit: Stop::at(Instant::now(), run.time_limit), bar }
+        Self { surface, control, threads, run, doubts, limit: Stop::at(Instant::now(), run.time_limit), bar }
     }
 
     fn solve_one(&self, row: &Realisation) -> Result<Cells, CliError> {
@@ -52,7 +54,10 @@ impl<'a> Realisations<'a> {
             kernel: &*kernel,
             budget: Budget::new(self.run.memory_limit),
         };
-        Ok(problem.solve(started, &Silent)?.summary(self.threads).cells())
+        let summary = problem.solve(started, &Silent)?.summary(self.threads);
+        // Realisations have no order.
+        self.doubts.note(0, &summary.warnings);
+        Ok(summary.cells())
     }
 }
 

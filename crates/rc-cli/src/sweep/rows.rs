@@ -12,6 +12,7 @@ use rc_sweep::memory::Budget;
 use rc_sweep::{Cells, Latest, LeakageSummary, RowError, RowSolver, Summary, Sweep, SweepRow, replace_fields};
 
 use super::bar::RowBar;
+use super::doubts::Doubts;
 use super::surfaces::Surfaces;
 use crate::error::CliError;
 use crate::run::stop::Stop;
@@ -27,6 +28,7 @@ pub(super) struct SceneRows<'a> {
     loaded: Latest<SurfaceOfLoads>,
     /// Number of all threads of the sweep.
     threads: usize,
+    doubts: &'a Doubts,
     limit: Stop,
     bar: RowBar,
 }
@@ -52,9 +54,14 @@ impl SurfaceOfLoads {
 
 impl<'a> SceneRows<'a> {
     /// The rows of `sweep`. Their time limit begins now.
-    pub(super) fn new(sweep: &'a Sweep, surfaces: &'a Surfaces, threads: usize, bar: RowBar) -> Self {
+    pub(super) fn new(
+        sweep: &'a Sweep,
+        surfaces: &'a Surfaces,
+        (threads, doubts): (usize, &'a Doubts),
+        bar: RowBar,
+    ) -> Self {
         let limit = Stop::at(Instant::now(), surfaces.run.time_limit);
-        Self { sweep, surfaces, loaded: Latest::default(), threads, limit, bar }
+        Self { sweep, surfaces, loaded: Latest::default(), threads, doubts, limit, bar }
     }
 
     /// Solves `contact` on the surface of `row`.
@@ -72,6 +79,7 @@ impl<'a> SceneRows<'a> {
         let problem = ProblemSetup { surface: &loaded.surface, contact, kernel: &*kernel, budget };
         let solved = problem.solve_planned(loaded.plan(&problem)?, started, &Silent)?;
         let summary = solved.summary(self.threads);
+        self.doubts.note(row.index, &summary.warnings);
         if let Some(folder) = folder {
             write_fields(&folder, &solved, &summary)?;
         }

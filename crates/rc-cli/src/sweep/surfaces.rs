@@ -9,7 +9,9 @@ use rc_sweep::{ControlKind, FileMark, Loads, MAX_ROWS, PlannedSurface, Seeds, Sw
 use serde_json::json;
 
 use super::args::SweepArgs;
+use super::map_mark::MapMark;
 use crate::error::CliError;
+use crate::files::names::SCENE_FILE;
 use crate::run::threads;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene};
 use crate::scene::resolve::{self, ContactSetup};
@@ -101,6 +103,11 @@ impl Surfaces {
         self.all[row.surface].contact(self.control, row.load)
     }
 
+    /// All surfaces.
+    pub(super) fn all(&self) -> &[SweptSurface] {
+        &self.all
+    }
+
     /// Quantity of the loads.
     pub(super) fn control(&self) -> ControlKind {
         self.control
@@ -135,22 +142,22 @@ impl SweptSurface {
     /// Checks the keys of `scene` under the first load. The loads share all other keys.
     pub(super) fn new(name: &str, scene: Scene, control: ControlKind, loads: &[f64]) -> Result<Self, CliError> {
         resolve::check_size_and_material(&scene.surface, &scene.contact)?;
-        let setup = resolve::surface(scene.surface)?;
+        // A sweep may have many maps.
+        let setup = resolve::surface(scene.surface)?.without_map();
         Self::on(setup, name, &scene.contact, (control, loads))
     }
 
     /// Checks the keys of a scene with a height map that a program holds.
     ///
-    /// `sides` are those of its cell (m) if the program knows them, and `mark` identifies it.
     pub(super) fn of_map(
         name: &str,
         scene: Scene,
         loads: (ControlKind, &[f64]),
-        (sides, mark): (Option<[f64; 2]>, FileMark),
+        MapMark { sides, points, mark }: MapMark,
     ) -> Result<Self, CliError> {
-        let keys = scene.surface.of_map(sides)?;
+        let (keys, assumed) = scene.surface.of_map(sides, points)?;
         resolve::check_cell_and_material(&keys, &scene.contact)?;
-        let setup = resolve::surface_in_cell(keys)?;
+        let setup = SurfaceSetup { assumed, ..resolve::surface_in_cell(keys)? };
         Ok(Self { held: Some(mark), ..Self::on(setup, name, &scene.contact, loads)? })
     }
 
@@ -178,6 +185,11 @@ impl SweptSurface {
         // The memory of a machine must not change the digits of a row.
         contact.params.method_follows_memory = false;
         Ok(contact)
+    }
+
+    /// The contacts under all loads.
+    pub(super) fn contacts(&self, control: ControlKind) -> impl Iterator<Item = Result<ContactSetup, CliError>> {
+        self.loads.iter().map(move |load| self.contact(control, *load))
     }
 
     /// The settings that determine the rows of this surface.
@@ -253,7 +265,7 @@ fn scenes(args: &SweepArgs) -> Result<Vec<(String, Scene)>, CliError> {
         if args.scene_files.is_empty() { vec![None] } else { args.scene_files.iter().map(Some).collect() };
     let mut scenes: Vec<(String, Scene)> = Vec::new();
     for file in files {
-        let name = file.and_then(|path| path.file_stem()).unwrap_or_default().to_string_lossy().into_owned();
+        let name = file.map(|path| name_of(path)).unwrap_or_default();
         if scenes.iter().any(|(other, _)| *other == name) {
             let message =
                 format_args!("scenes: two are called '{name}', so that their rows could not be told apart; rename one");
@@ -262,6 +274,17 @@ fn scenes(args: &SweepArgs) -> Result<Vec<(String, Scene)>, CliError> {
         scenes.push((name, resolve::layers(file.map(Path::new), args.scene.clone())?));
     }
     Ok(scenes)
+}
+
+/// The name of a scene: its file's name, or that of the folder for a folder or its `scene.toml`.
+fn name_of(path: &Path) -> String {
+    let is_of_folder = path.file_name().is_some_and(|name| name == SCENE_FILE);
+    let named = if is_of_folder { path.parent().filter(|folder| folder.file_name().is_some()) } else { None };
+    let is_folder = named.is_some() || path.is_dir();
+    let path = named.unwrap_or(path);
+    // The name of a folder has no extension.
+    let name = if is_folder { path.file_name() } else { path.file_stem() };
+    name.unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// The quantity of the loads, which is the same for all scenes.

@@ -23,4 +23,5 @@ mod sweep_mean;
 mod sweep_refused;
 mod sweep_shards;
 mod tools;
+mod warnings;
 mod watched;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::support::{MATERIAL, Place, assert_refused, assert_solved, bumps, f8, map, npy, text};
+use crate::support::{MATERIAL, Place, assert_refused, assert_solved, bumps, codes, f8, map, npy, text};
 
 /// Path of a file of data/formats/.
 fn sample(name: &str) -> String {
@@ -13,7 +13,8 @@ fn sample(name: &str) -> String {
 fn a_measured_map_becomes_a_surface_that_is_solved() {
     let place = Place::new();
     let scan = sample("surfalize-missing.sdf");
-    // The map has 12 x 8 points on 24 µm x 24 µm. It is a square, has a hole, and is not periodic.
+    // The map has 12 x 8 points on 24 µm x 24 µm. It is a square, has a hole, and is not periodic. The form is fitted to
+    // the measured points before the hole is filled, whatever the order of the flags.
     assert_refused(
         &place.run(&[&["solve", "--heights", &scan, "--pressure", "1e5"], &MATERIAL[..]].concat()),
         "--fill laplace",
@@ -42,8 +43,10 @@ fn a_measured_map_becomes_a_surface_that_is_solved() {
     assert_eq!(json["cell"].as_f64().map(|cell| (cell * 1e9).round()), Some(48_000.0), "twice 24 µm");
     let treatments = json["treatments"].as_array().expect("a list");
     assert_eq!(treatments.len(), 5);
-    assert_eq!((treatments[0]["missing"].as_u64(), treatments[1]["missing"].as_u64()), (Some(1), Some(0)));
-    let solve = ["solve", "ready/scene.toml", "--e-star", "1e9", "--pressure", "1e6", "--quiet", "--out", "result"];
+    let states: Vec<_> = treatments.iter().map(|row| (row["treatment"].as_str(), row["missing"].as_u64())).collect();
+    let expected = [("as read", 1), ("level plane", 1), ("fill laplace", 0)];
+    assert_eq!(states[..3], expected.map(|(name, missing)| (Some(name), Some(missing))));
+    let solve = ["solve", "ready", "--e-star", "1e9", "--pressure", "1e6", "--quiet", "--out", "result"];
     assert_solved(&place.run(&solve));
     // The result is repeated from its own folder, in which the map no longer has units.
     let again = ["solve", "result/scene.toml", "--quiet", "--out", "again"];
@@ -61,11 +64,14 @@ fn the_cell_is_that_of_the_file_and_units_are_applied_once() {
     };
     let from_x3p = json(&[&sample("surfalize.x3p")]);
     // These are the same heights as bare numbers, in nm.
-    let from_csv = json(&[&sample("expected.csv"), "--unit", "nm", "--cell", "24e-6"]);
-    let scaled = json(&[&sample("expected.csv"), "--height-scale", "1e-9", "--cell", "24e-6"]);
+    let csv = sample("expected.csv");
+    let sides = ["--cell", "24e-6", "--cell-y", "24e-6"];
+    let from_csv = json(&[&[&*csv, "--unit", "nm"], &sides[..]].concat());
+    let scaled = json(&[&[&*csv, "--height-scale", "1e-9"], &sides[..]].concat());
+    let in_two_units = json(&[&[&*csv, "--unit", "um", "--height-unit", "nm"], &sides[..]].concat());
     for key in ["cell", "rms_height", "rms_slope", "h_max"] {
         let of = |json: &serde_json::Value| json[key].as_f64().expect("a number");
-        for other in [&from_csv, &scaled] {
+        for other in [&from_csv, &scaled, &in_two_units] {
             assert!((of(other) / of(&from_x3p) - 1.0).abs() < 1e-9, "{key}: {} and {}", of(other), of(&from_x3p));
         }
     }
@@ -82,7 +88,7 @@ fn contradictions_and_what_is_missing_are_refused() {
     let cases: [(&[&str], &str); 13] = [
         (&["surface", "--heights", &x3p, "--cell", "1e-3"], "24 µm wide, but cell says 1 mm"),
         (&["surface", "--heights", &x3p, "--unit", "um"], "names its units"),
-        (&["surface", "--heights", &x3p, "--height-scale", "1e-9"], "gives its heights in metres"),
+        (&["surface", "--heights", &x3p, "--height-scale", "1e-9"], "names the unit of its heights"),
         (&["surface", "--heights", &png, "--cell", "1"], "height_scale"),
         (&["surface", "--heights", &png, "--cell", "1", "--unit", "um", "--height-scale", "1e-9"], "omit unit"),
         (&["surface", "--heights", "map.xyz", "--cell-y", "1"], "2 m high, but cell_y says 1 m"),
@@ -132,7 +138,7 @@ fn a_height_map_never_gets_the_size_or_the_material_of_the_example() {
 }
 
 #[test]
-fn points_of_a_map_without_a_size_are_squares_when_it_is_treated() {
+fn points_of_a_map_without_a_size_are_squares() {
     let place = Place::new();
     let heights: Vec<f32> =
         (0..48 * 32).map(|i| ((i % 48) as f32 * 0.3).sin() * 1e-6 + (i / 48) as f32 * 1e-8).collect();
@@ -146,15 +152,25 @@ fn points_of_a_map_without_a_size_are_squares_when_it_is_treated() {
     let sides =
         ["cell", "cell_y"].map(|key| place.json("whole/surface.json")[key].as_f64().map(|side| (side * 1e9).round()));
     assert_eq!(sides, [Some(3e6), Some(2e6)]);
-    // Without a treatment the map is spread over the cell, as in rc solve, and rc inspect says so.
-    assert_solved(&place.run(&[&treat[..], &["--quiet"]].concat()));
+    // Other commands assume the same and say so, unless the other side is given.
+    let press = ["--e-star", "1e9", "--pressure", "1e4", "--boundary", "free", "--json", "--quiet", "--out"];
+    let summary = |flags: &[&str], out: &str| {
+        let solve = ["solve", "--heights", "map.npy", "--cell", "3e-3"];
+        assert_solved(&place.run(&[&solve[..], flags, &press[..], &[out]].concat()));
+        place.json(&format!("{out}/summary.json"))
+    };
+    let (assumed, given) = (summary(&[], "assumed"), summary(&["--cell-y", "2e-3"], "given"));
+    assert_eq!(assumed["area_fraction"], given["area_fraction"]);
+    assert_eq!((codes(&assumed), codes(&given)), (vec!["assumed".to_owned()], Vec::new()));
+    let square = summary(&["--cell-y", "3e-3"], "square-cell");
+    assert_ne!(square["area_fraction"], given["area_fraction"]);
+    // The scene of a result keeps the sides.
+    assert_solved(&place.run(&["solve", "square-cell", "--quiet", "--out", "again"]));
+    assert!(place.bytes("again/pressure.npy") == place.bytes("square-cell/pressure.npy"), "another cell");
     let output = place.run(&["inspect", "map.npy", "--cell", "3e-3"]);
     assert_solved(&output);
-    assert!(
-        text(&output.stdout).starts_with("this map has no size, so it is taken as a square"),
-        "{}",
-        text(&output.stdout)
-    );
+    let told = text(&output.stderr);
+    assert!(told.starts_with("warning: assumed: equal spacings") && told.contains("3 mm by 2 mm"), "{told}");
 }
 
 #[test]
@@ -201,9 +217,11 @@ fn channels_are_listed_and_one_of_them_is_read() {
     let place = Place::new();
     let stack = sample("igorwriter-stack.ibw");
     // A point of the heights is missing.
-    let output = place.run(&["inspect", &stack]);
-    assert_refused(&output, "--fill laplace");
-    assert_refused(&output, "the file has the channels Phase, Height");
+    let output = place.run(&["inspect", &stack, "--out", "look"]);
+    assert_solved(&output);
+    let printed = text(&output.stdout);
+    assert!(printed.contains("heights      Height, read") && printed.contains("missing            1 of "), "{printed}");
+    assert_eq!(place.names("look"), ["distribution.png", "distribution.svg", "surface.png"], "no spectrum");
     let output = place.run(&["inspect", &stack, "--channel", "phase", "--height-scale", "1e-9"]);
     assert_solved(&output);
     let printed = text(&output.stdout);
@@ -219,7 +237,7 @@ fn channels_are_listed_and_one_of_them_is_read() {
             "no channel is called 'Slope'; the file has Phase, Height",
         ),
         (&["surface", "--heights", &stack, "--channel", "Phase"], "not lengths"),
-        (&["surface", "--waves", "8", "--channel", "Phase"], "channel and layout"),
+        (&["surface", "--waves", "8", "--channel", "Phase"], "channel, layout, missing"),
         (&["inspect", &stack, "--layout", "columns"], "'columns' is not a layout"),
     ];
     for (args, expected) in refused {

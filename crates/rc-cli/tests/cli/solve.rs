@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::support::{MATERIAL, Place, assert_refused, assert_solved, bumps, f8, map, npy, small, text};
 
 /// Keys of `summary.json`, in their order.
-pub(crate) const KEYS: [&str; 43] = [
+pub(crate) const KEYS: [&str; 44] = [
     "status",
     "control",
     "kernel",
@@ -47,6 +47,7 @@ pub(crate) const KEYS: [&str; 43] = [
     "level_iterations",
     "iterations",
     "operator_applications",
+    "warnings",
     "wall_seconds",
     "peak_memory_bytes",
     "threads",

@@ -82,6 +82,12 @@ pub(crate) fn assert_solved(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
 }
 
+/// The codes of the warnings in a summary or in the record of a surface.
+pub(crate) fn codes(json: &serde_json::Value) -> Vec<String> {
+    let list = json["warnings"].as_array().expect("a list of warnings");
+    list.iter().map(|warning| warning["code"].as_str().expect("a code").to_owned()).collect()
+}
+
 /// Fails unless the exit code is 2 and the only output is one line with `expected`.
 ///
 /// The line must be on standard error.

@@ -45,7 +45,17 @@ fn inspect_measures_what_surface_made() {
         // power of the wavenumber.
         assert!((a / b - 1.0).abs() < 1e-9, "{key}: made {a}, measured {b}");
     }
-    assert_refused(&place.run(&["inspect", "s"]), "heights.npy");
+    // The folder and its scene are the surface with its exact sums.
+    for of_folder in ["s", "s/scene.toml"] {
+        let output = place.run(&["inspect", of_folder, "--json"]);
+        assert_solved(&output);
+        assert_eq!(serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("JSON"), made);
+    }
+    let pictures = ["distribution.png", "distribution.svg", "spectrum.png", "spectrum.svg", "surface.png"];
+    assert_solved(&place.run(&["plot", "s", "--out", "pictures"]));
+    assert_eq!(place.names("pictures"), pictures);
+    assert_solved(&place.run(&["report", "s"]));
+    assert!(text(&place.bytes("s/report.html")).contains("\"kind\":\"surface\""), "not the page of a surface");
     assert_refused(&place.run(&["inspect", "s/heights.npy", "--cell", "-1"]), "cell");
 }
 

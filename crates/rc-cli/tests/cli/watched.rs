@@ -56,7 +56,20 @@ fn the_picture_is_there_whole_while_the_solve_runs_and_gone_after_it() {
 #[test]
 fn what_is_solved_at_once_or_grid_by_grid_can_be_watched_too() {
     let place = Place::new();
-    let full = ["solve", "--waves", "2", "--grid", "16", "--pressure", "1e12", "--watch", "--out", "full", "--json"];
+    let full = [
+        "solve",
+        "--waves",
+        "2",
+        "--grid",
+        "16",
+        "--pressure",
+        "1e12",
+        "--watch",
+        "--out",
+        "full",
+        "--json",
+        "--quiet",
+    ];
     let output = place.run(&full);
     assert_solved(&output);
     assert!(output.stderr.is_empty(), "{}", text(&output.stderr));

@@ -36,6 +36,7 @@ mod opd;
 mod opened;
 mod order;
 mod other;
+mod params;
 mod plu;
 mod plux;
 mod png;
@@ -72,33 +73,13 @@ pub(crate) use lines::{data_lines, number, words};
 pub use mask::{Mask, MaskError};
 pub use mat::{MatArray, mat_arrays};
 pub(crate) use netcdf::hdf5_table;
+pub use params::ReadParams;
 pub use points::of_points;
 
 use self::channel::{Channels, chosen, named, only};
 use self::heading::Heading;
 use self::opened::Opened;
 use crate::{FormatError, HeightMap, ReadError};
-
-/// Choices for files that can be read in several ways.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ReadParams {
-    /// Name of a channel. `None` means the first channel with heights.
-    pub channel: Option<String>,
-    /// Layout of a text. `None` means the layout that its first lines suggest.
-    pub layout: Option<Layout>,
-    /// Values that mark missing points, in the numbers of the file.
-    pub missing: Vec<f64>,
-    /// What a mask in the file means.
-    pub mask: Mask,
-    /// Maximum number of bytes of anything that a file unpacks to, and of the map itself.
-    pub max_bytes: u64,
-}
-
-impl Default for ReadParams {
-    fn default() -> Self {
-        Self { channel: None, layout: None, missing: Vec::new(), mask: Mask::default(), max_bytes: DEFAULT_MAX_BYTES }
-    }
-}
 
 /// The format of the file at `path`. For a gzip file, it is the format of the contents.
 ///
@@ -120,7 +101,7 @@ pub fn may_have_sides(path: &Path, params: &ReadParams) -> Result<bool, ReadErro
     if matches!(format, Format::Png | Format::Tiff) {
         // Their sizes may be behind the levels.
         let says_sides = if format == Format::Png { png::says_sides } else { tiff::says_sides };
-        let bytes = file.whole(format, params.max_bytes);
+        let bytes = file.whole(format, params);
         return bytes.map(|bytes| says_sides(&bytes)).map_err(|problem| ReadError { path: path.to_owned(), problem });
     }
     Ok(match format {
@@ -151,13 +132,14 @@ pub fn read_with(path: &Path, params: &ReadParams) -> Result<HeightMap, ReadErro
     let file = Opened::new(path, params.max_bytes)?;
     if file.format == Format::Npy && params.channel.is_none() {
         // Arrays may be as large as memory, so they are not read as bytes first.
+        let max_bytes = file.limit(params);
         let (stream, bytes) = file.stream();
-        return npy::map(stream, bytes, params.layout, params.max_bytes)
+        return npy::map(stream, bytes, params.layout, max_bytes)
             .and_then(|map| checked(map, &params.missing))
             .map_err(fail);
     }
     let format = layout::format(file.format, params.layout);
-    let bytes = file.whole(format, params.max_bytes);
+    let bytes = file.whole(format, params);
     bytes.and_then(|bytes| parse_with(&bytes, format, params)).map_err(fail)
 }
 
@@ -174,7 +156,7 @@ pub fn channels(path: &Path, params: &ReadParams) -> Result<Vec<ChannelInfo>, Re
         // The file has one array, which may be as large as memory.
         return Ok(vec![ChannelInfo { name: String::new(), is_height: true }]);
     }
-    let channels = file.whole(format, params.max_bytes).and_then(|bytes| channels_of(&bytes, format, params));
+    let channels = file.whole(format, params).and_then(|bytes| channels_of(&bytes, format, params));
     channels.map_err(|problem| ReadError { path: path.to_owned(), problem })
 }
 

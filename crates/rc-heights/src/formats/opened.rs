@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use flate2::bufread::MultiGzDecoder;
 
 use super::limit::{self, Needed};
+use super::params::ReadParams;
 use super::{Format, archive, xyz};
 use crate::{FormatError, ReadError};
 
@@ -77,11 +78,17 @@ impl Opened {
         Ok(file)
     }
 
+    /// Memory that reading this file may take.
+    pub(super) fn limit(&self, params: &ReadParams) -> u64 {
+        if self.length.is_some() { params.max_plain_bytes } else { params.max_bytes }
+    }
+
     /// Reads all bytes, which are of `format`.
     ///
     /// # Errors
-    /// [`FormatError::TooLarge`] when they, or the numbers in them, need more than `max_bytes` of memory.
-    pub(super) fn whole(mut self, format: Format, max_bytes: u64) -> Result<Vec<u8>, FormatError> {
+    /// [`FormatError::TooLarge`] when they, or the numbers in them, need more memory than `params` allow.
+    pub(super) fn whole(mut self, format: Format, params: &ReadParams) -> Result<Vec<u8>, FormatError> {
+        let max_bytes = self.limit(params);
         let length = self.length.unwrap_or(0);
         limit::check(length, max_bytes)?;
         self.start.reserve_exact(usize::try_from(length).unwrap_or(0).saturating_sub(self.start.len()));

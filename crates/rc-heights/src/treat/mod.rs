@@ -22,7 +22,7 @@ use crate::{BorderStep, HeightMap};
 pub use crop::SAME_LENGTH;
 pub use error::TreatError;
 use moments::rms_height;
-pub(crate) use moments::rms_slope;
+pub(crate) use moments::{mean, rms_slope};
 pub use periodic::hann;
 pub use stencil::Edges;
 pub use treatment::{Crop, Fill, Flip, Level, MOST_COPIES, Periodic, Repeat, Treatment};

@@ -12,7 +12,7 @@ pub(super) fn rms_height(heights: &Field) -> f64 {
 }
 
 /// Mean of the values that are not `NaN`, and their number.
-pub(super) fn mean(heights: &Field) -> (f64, usize) {
+pub(crate) fn mean(heights: &Field) -> (f64, usize) {
     let n = heights.values().iter().filter(|height| !height.is_nan()).count();
     (sum_rows(heights, |height| height) / n as f64, n)
 }

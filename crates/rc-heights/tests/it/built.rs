@@ -84,7 +84,7 @@ fn a_simple_field_has_its_units() {
         let map = read("gsf", &build::gsf(&format!("XRes=3\nYRes=2\nZUnits={other}\n")), Format::Gsf);
         assert_eq!(map.height_unit, Unit::NotLength, "{other}");
         let height_scale = Some(1e-9);
-        let unit_alone = Scales { unit: Some(LengthUnit::Nanometre), height_scale };
+        let unit_alone = Scales { unit: Some(LengthUnit::Nanometre), height_scale, ..Scales::default() };
         let error = map.clone().in_metres(unit_alone).expect_err("a unit").to_string();
         assert!(error.contains("not lengths") && !error.contains("levels"), "{error}");
         assert_map(other, &map.in_metres(Scales { height_scale, ..Scales::default() }).expect(other), 1e-9, 0.0, None);

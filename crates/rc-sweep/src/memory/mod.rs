@@ -55,6 +55,15 @@ pub fn physical() -> Option<u64> {
     None
 }
 
+/// Number of bytes that a file may unpack to: `limit`, or a quarter of the machine.
+///
+/// A map is unpacked, converted and then solved, so that a larger part would not leave room for the solve.
+#[must_use]
+pub fn read_limit(limit: Option<ByteSize>) -> u64 {
+    const UNKNOWN_MACHINE: u64 = 2 << 30;
+    limit.map_or_else(|| physical().map_or(UNKNOWN_MACHINE, |bytes| bytes / 4), |limit| limit.0)
+}
+
 #[cfg(all(test, target_os = "linux"))]
 mod tests {
     #[test]

@@ -36,6 +36,8 @@ pub struct ContactSetup {
     pub keys: ContactKeys,
     /// The ranks of the solve and the file that keeps its levels.
     pub place: Place,
+    /// Whether a wanted error of the area chooses the grid.
+    pub grid_is_chosen: bool,
 }
 
 /// The ranks of a solve, and its checkpoint file.
@@ -105,7 +107,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
         ..SolveParams::certified()
     };
     let place = Place::default();
-    Ok(ContactSetup { units, control, hardness, kernel, boundary, layer, params, keys, place })
+    Ok(ContactSetup { units, control, hardness, kernel, boundary, layer, params, keys, place, grid_is_chosen: false })
 }
 
 fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {

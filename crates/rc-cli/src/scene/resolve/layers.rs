@@ -3,10 +3,13 @@
 use std::path::Path;
 
 use crate::error::CliError;
+use crate::files::names::SCENE_FILE;
 use crate::scene::file;
-use crate::scene::keys::Scene;
+use crate::scene::keys::{Scene, SurfaceKeys};
 
-/// Flags laid over the scene file, without defaults.
+/// Flags laid over the scene that `file` names, without defaults.
+///
+/// `file` is a scene file, a folder with one, or a height map.
 ///
 /// Flags and file are each checked for alternatives that exclude each other.
 ///
@@ -14,10 +17,36 @@ use crate::scene::keys::Scene;
 /// [`CliError::Input`].
 pub fn layers(file: Option<&Path>, flags: Scene) -> Result<Scene, CliError> {
     check_alternatives(&flags).map_err(CliError::input)?;
-    let Some(path) = file else { return Ok(flags) };
-    let scene = file::read(path)?;
-    check_alternatives(&scene).map_err(|message| CliError::in_file(path, message))?;
-    Ok(flags.over(scene))
+    let mut scene = match file {
+        None => flags,
+        Some(path) => {
+            let lower = lower_layer(path)?;
+            check_alternatives(&lower).map_err(|message| CliError::in_file(path, message))?;
+            flags.over(lower)
+        }
+    };
+    scene.surface.read_limit = scene.run.memory_limit;
+    Ok(scene)
+}
+
+/// The scene that a path names: a scene file, a folder with one, or the file of a height map.
+fn lower_layer(path: &Path) -> Result<Scene, CliError> {
+    if path.is_dir() {
+        let file = path.join(SCENE_FILE);
+        if !file.is_file() {
+            let message = format_args!(
+                "a folder without {SCENE_FILE}; give a scene file, a height map, or a folder of rc surface or rc solve"
+            );
+            return Err(CliError::in_file(path, message));
+        }
+        return file::read(&file);
+    }
+    let is_scene = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+    if !is_scene && rc_heights::format_of(path).is_ok() {
+        let surface = SurfaceKeys { heights: Some(path.to_owned()), ..SurfaceKeys::default() };
+        return Ok(Scene { surface, ..Scene::default() });
+    }
+    file::read(path)
 }
 
 /// Refuses keys that exclude each other in one place.

@@ -1,16 +1,16 @@
 //! The step from keys to a checked surface.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use rc_core::{Grid, PeriodicCell};
 use rc_fractal::{Amplitudes, MAX_WAVES, Normalisation, SpectrumParams, Truncation};
-use rc_heights::{ReadParams, Scales};
+use rc_heights::Scales;
 
 use super::checks::{checked_grid, missing, positive};
 use crate::error::CliError;
 use crate::scene::file;
-use crate::scene::heights;
+use crate::scene::heights::{self, CellOfMap};
 use crate::scene::keys::SurfaceKeys;
 use crate::scene::surface::{Source, SurfaceSetup};
 use crate::scene::values::GridSpec;
@@ -25,12 +25,13 @@ const ELEMENTS_PER_WAVE: usize = 32;
 ///
 /// # Errors
 /// [`CliError::Input`].
-pub fn surface(mut keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
-    // The file is read for its size only. Such files are small compared with a solve.
-    if let Some(path) = keys.heights.as_deref() {
-        [keys.cell, keys.cell_y] = sides_of_map(path, &keys)?;
-    }
-    surface_in_cell(keys)
+pub fn surface(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
+    let Some(path) = keys.heights.clone() else { return surface_in_cell(keys) };
+    // Only the whole file tells the sides and the numbers of points. It is not read again.
+    let map = heights::read(&path, &keys.read_params(), keys.scales())?;
+    let CellOfMap { cell, cell_y, assumed } = CellOfMap::of(&path, &map, [keys.cell, keys.cell_y])?;
+    let setup = surface_in_cell(SurfaceKeys { cell, cell_y, ..keys })?;
+    Ok(SurfaceSetup { assumed, held: Arc::new(Mutex::new(Some(map))), ..setup })
 }
 
 /// Checks the keys of a surface whose size is in the keys only.
@@ -49,7 +50,7 @@ pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
     match (keys.heights.clone(), keys.spectrum.clone()) {
         (Some(path), _) => {
             let source = Source::File { path, expected: grid, params: keys.read_params(), scales: keys.scales() };
-            Ok(SurfaceSetup { cell, source, may_be_flat: false, keys })
+            Ok(SurfaceSetup::new(cell, source, keys))
         }
         (None, Some(path)) => of_waves(keys, &path, cell, grid),
         (None, None) => random(keys, cell, grid),
@@ -63,8 +64,10 @@ fn random(keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<S
             "unit and height_scale apply to surfaces from files; give --heights FILE or --spectrum FILE, or omit them",
         ));
     }
-    if keys.read_params() != ReadParams::default() {
-        return Err(CliError::input("channel and layout apply to height maps; give --heights FILE, or omit them"));
+    if keys.reads_in_a_way() {
+        return Err(CliError::input(
+            "channel, layout, missing and mask apply to height maps; give --heights FILE, or omit them",
+        ));
     }
     if keys.cell_y.is_some() {
         return Err(CliError::input("cell_y: applies to height maps; a random surface has a square cell, so omit it"));
@@ -72,7 +75,7 @@ fn random(keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<S
     let spectrum = spectrum(&keys, cell.side())?;
     let grid = resolving_grid(grid, spectrum.waves)?;
     let keys = SurfaceKeys { grid: Some(GridSpec { nx: grid.nx(), ny: grid.ny() }), ..keys };
-    Ok(SurfaceSetup { cell, source: Source::Random { spectrum, grid }, may_be_flat: false, keys })
+    Ok(SurfaceSetup::new(cell, Source::Random { spectrum, grid }, keys))
 }
 
 /// The setup of a surface from a file of waves.
@@ -87,7 +90,7 @@ fn of_waves(keys: SurfaceKeys, path: &Path, cell: PeriodicCell, grid: Option<Gri
     let waves = Arc::new(WaveFile::read(path, keys.scales(), cell.side())?);
     let grid = resolving_grid(grid, waves.surface().waves())?;
     let keys = SurfaceKeys { grid: Some(GridSpec { nx: grid.nx(), ny: grid.ny() }), ..keys };
-    Ok(SurfaceSetup { cell, source: Source::Waves { path: path.to_owned(), waves, grid }, may_be_flat: false, keys })
+    Ok(SurfaceSetup::new(cell, Source::Waves { path: path.to_owned(), waves, grid }, keys))
 }
 
 /// The given grid, or one that resolves `waves` waves per cell well.
@@ -103,15 +106,6 @@ fn resolving_grid(grid: Option<Grid>, waves: usize) -> Result<Grid, CliError> {
         )));
     }
     Ok(grid)
-}
-
-/// Sides of the cell of a height map (m), from its file or the keys.
-fn sides_of_map(path: &Path, keys: &SurfaceKeys) -> Result<[Option<f64>; 2], CliError> {
-    let given = [keys.cell, keys.cell_y];
-    if !rc_heights::may_have_sides(path, &keys.read_params())? {
-        return Ok(given);
-    }
-    heights::sides(path, heights::read(path, &keys.read_params(), keys.scales())?.sides, given)
 }
 
 /// The parameters of a random surface on the unit cell.

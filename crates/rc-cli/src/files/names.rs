@@ -1,0 +1,10 @@
+//! Names of files in folders of results and of surfaces.
+
+/// A height map.
+pub(crate) const HEIGHTS_FILE: &str = "heights.npy";
+
+/// The statistics of a surface.
+pub(crate) const RECORD_FILE: &str = "surface.json";
+
+/// The scene.
+pub(crate) const SCENE_FILE: &str = "scene.toml";

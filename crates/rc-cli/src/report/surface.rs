@@ -1,0 +1,95 @@
+//! The page of a surface without a contact.
+
+use std::path::Path;
+
+use rc_core::quantity::{digits, engineering};
+use rc_plot::Palette;
+use serde::Serialize;
+
+use super::command::quoted;
+use super::embedded::{Bits, EmbeddedField, MOST_PIXELS, pixel_means};
+use super::page::{Command, Page, Text, Tile, made};
+use crate::error::CliError;
+use crate::inspect::record::SurfaceRecord;
+use crate::inspect::text::{parameter_lines, surface_lines};
+use crate::inspect::{Inspected, of_surface};
+use rc_sweep::to_json;
+
+/// The data of a page of a surface, without those of all pages.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct SurfaceBody {
+    /// Sides of the cell along x and y (m).
+    sides: [f64; 2],
+    /// Height above the lowest point (m).
+    heights: EmbeddedField,
+    /// The lowest height (m).
+    lowest: f64,
+    note: String,
+    /// Wavenumber (rad/m) and spectrum C (m⁴).
+    spectrum: Vec<(f64, f64)>,
+    /// Ends of the power law in the spectrum, if there is one, and its Hurst exponent.
+    law: Option<(Vec<(f64, f64)>, String)>,
+    /// Height about the mean (m) and density (1/m).
+    distribution: Vec<(f64, f64)>,
+    lines: Vec<(&'static str, String)>,
+    parameters: Vec<(&'static str, String)>,
+}
+
+/// The page of the scene at `path`, or of the folder with one.
+///
+/// # Errors
+/// [`CliError::Input`].
+pub(super) fn page(path: &Path) -> Result<Page<SurfaceBody>, CliError> {
+    let Inspected { heights, record } = of_surface(path)?;
+    let lowest = heights.min();
+    let pixels = pixel_means(heights.grid(), |i| (heights.values()[i] - lowest) * record.cell);
+    let note = if pixels.grid() == heights.grid() {
+        "Every point is a pixel.".to_owned()
+    } else {
+        format!(
+            "The map has at most {MOST_PIXELS} x {MOST_PIXELS} pixels. Each pixel is a mean of the {} points.",
+            heights.grid()
+        )
+    };
+    let tile = |name, value| Tile { name, value };
+    let command = format!("rc solve {} --e-star ... --pressure ... --out result", quoted(&path.display().to_string()));
+    Ok(Page {
+        title: "Surface".to_owned(),
+        subtitle: format!("{} x {} points, nothing presses on it", record.grid[0], record.grid[1]),
+        status: "surface".to_owned(),
+        good: true,
+        warnings: record.warnings.iter().map(|warning| warning.text.clone()).collect(),
+        tiles: vec![
+            tile("rms height", engineering(record.rms_height, "m")),
+            tile("rms slope", digits(record.rms_slope, 4)),
+            tile("range of heights", engineering(record.h_max - record.h_min, "m")),
+        ],
+        commands: vec![Command { note: "This presses it:".to_owned(), text: command }],
+        files: vec![Text { title: "Statistics", text: to_json(&record) }],
+        made: made(),
+        kind: "surface",
+        body: SurfaceBody {
+            sides: [record.cell, record.cell_y],
+            heights: EmbeddedField::of_gap(&pixels, pixels.max(), Bits::Sixteen, Palette::Viridis),
+            lowest: lowest * record.cell,
+            note,
+            spectrum: spectrum(&record),
+            law: law(&record),
+            distribution: record.distribution.bins().collect(),
+            lines: surface_lines(&record),
+            parameters: parameter_lines(&record.parameters),
+        },
+    })
+}
+
+/// The spectrum where it is more than rounding.
+fn spectrum(record: &SurfaceRecord) -> Vec<(f64, f64)> {
+    let highest = record.spectrum.iter().fold(0.0_f64, |most, row| most.max(row.psd));
+    record.spectrum.iter().filter(|row| row.psd > 1e-20 * highest).map(|row| (row.wavenumber, row.psd)).collect()
+}
+
+fn law(record: &SurfaceRecord) -> Option<(Vec<(f64, f64)>, String)> {
+    let fit = record.hurst_fit?;
+    let ends = [fit.from_waves, fit.to_waves].map(|waves| std::f64::consts::TAU * waves / record.cell);
+    Some((ends.map(|q| (q, fit.psd(q))).to_vec(), format!("H = {}", digits(fit.hurst, 3))))
+}

@@ -1,0 +1,66 @@
+//! Doubts about a solved contact: its pressures, and spots of single elements.
+
+use rc_core::Boundary;
+use rc_core::quantity::{digits, engineering};
+use rc_solver::{Control, Solution};
+use rc_sweep::Warning;
+use rc_sweep::WarningCode::{Coarse, Load};
+
+use super::contact::mean_pressure;
+use super::single_spots::SingleSpots;
+use crate::scene::resolve::ContactSetup;
+
+/// Maximum pressure in E* above which an elastic contact is hardly elastic.
+///
+/// Strains below a contact are about p/E*. Metals yield at p/E* = 0.01 to 0.03. Only rubber bears 0.3 E*.
+const LARGE_PRESSURE: f64 = 0.3;
+
+/// Part of the contact area in spots of single elements above which a map is too coarse for the load.
+///
+/// The area of such a spot may be wrong by half an element.
+const MANY_SINGLE: f64 = 0.1;
+
+/// The doubts that only the solution shows.
+///
+/// Ranks call this together, and the first one gets the doubts.
+pub(crate) fn after(solution: &Solution<'_>, contact: &ContactSetup, is_map: bool) -> Vec<Warning> {
+    let mut found = Vec::new();
+    let mean = if let Control::MeanPressure(_) = contact.control { None } else { Some(solution.info().mean_pressure) };
+    found.extend(mean.and_then(|mean| mean_pressure(mean, contact)));
+    if contact.hardness.is_infinite() {
+        found.extend(maximum(solution.observables().max_pressure, contact));
+    }
+    if is_map {
+        found.extend(single(solution, contact.boundary));
+    }
+    found
+}
+
+fn maximum(pressure: f64, contact: &ContactSetup) -> Option<Warning> {
+    let text = || {
+        format!(
+            "the maximum pressure of {} is {} E*, which few materials bear elastically; give a --hardness, or check the units \
+             of load and modulus",
+            engineering(contact.units.pascals(pressure), "Pa"),
+            digits(pressure, 3)
+        )
+    };
+    (pressure > LARGE_PRESSURE).then(|| Warning::new(Load, text()))
+}
+
+fn single(solution: &Solution<'_>, boundary: Boundary) -> Option<Warning> {
+    let mut spots = SingleSpots::new(solution.grid(), boundary);
+    let Ok(()) = solution.pressure_rows(|_, rows| {
+        spots.take(rows);
+        Ok::<_, std::convert::Infallible>(())
+    });
+    let part = spots.part();
+    let text = || {
+        format!(
+            "{} % of the contact area is in spots of a single element, whose area is uncertain; the map is too coarse for \
+             this load (rc surface --resample, or a larger load)",
+            digits(100.0 * part, 3)
+        )
+    };
+    (part > MANY_SINGLE).then(|| Warning::new(Coarse, text()))
+}

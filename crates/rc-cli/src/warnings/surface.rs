@@ -1,0 +1,159 @@
+//! Doubts about a surface: units, slopes, and values of a map that are no heights.
+
+use std::path::Path;
+
+use rc_core::quantity::{count, digits, engineering};
+use rc_heights::suspicion::{Counter, Suspicions};
+use rc_heights::{BorderStep, HeightMap};
+use rc_sweep::Warning;
+use rc_sweep::WarningCode::{Assumed, Border, Columns, Counter as CounterCode, Marks, Missing, Slope, Spikes, Units};
+
+use crate::files::names::{HEIGHTS_FILE, RECORD_FILE};
+
+/// rms slope above which a surface is hardly a rough one.
+///
+/// Ground, milled, blasted and fractured surfaces have at most 0.5 at the resolution of instruments. A wrong unit of
+/// heights is wrong by a factor of 1000 or more.
+const STEEPEST: f64 = 1.0;
+
+/// Range of heights relative to the shorter side above which a map is hardly a roughness.
+const DEEPEST: f64 = 1.0 / 3.0;
+
+/// rms slope above which the theory is inaccurate.
+///
+/// The theory of the half-space neglects the squares of slopes, here about a tenth.
+const SMALL_SLOPE: f64 = 0.3;
+
+/// Part of filled points above which their heights matter.
+///
+/// Contact areas are known to a percent or so. Filled points follow their neighbours, so that only a part of them is
+/// wrong.
+const FEW_FILLED: f64 = 0.02;
+
+/// Range of heights of a sum of many waves, in rms heights.
+const RANGE_OF_WAVES: f64 = 6.0;
+
+/// What is known of a surface besides its values.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shape {
+    /// rms slope.
+    pub(crate) rms_slope: f64,
+    /// Range of heights (m).
+    pub(crate) range: f64,
+    /// Sides of the cell (m).
+    pub(crate) sides: [f64; 2],
+}
+
+impl Shape {
+    /// The shape of a sum of waves with this rms height (m).
+    pub(crate) fn of_waves(rms_height: f64, rms_slope: f64, sides: [f64; 2]) -> Self {
+        Self { rms_slope, range: RANGE_OF_WAVES * rms_height, sides }
+    }
+
+    /// Doubts about units and slopes.
+    pub(crate) fn warnings(self) -> Vec<Warning> {
+        let (slope, shorter) = (digits(self.rms_slope, 3), self.sides[0].min(self.sides[1]));
+        let mut found = Vec::new();
+        if self.rms_slope > STEEPEST || self.range > DEEPEST * shorter {
+            let text = format!(
+                "heights over a range of {} on a side of {}, with an rms slope of {slope}, are hardly a rough surface; check \
+                 the units of heights (--unit, --height-unit, --height-scale) and the size (--cell)",
+                engineering(self.range, "m"),
+                engineering(shorter, "m")
+            );
+            found.push(Warning::new(Units, text));
+        }
+        if self.rms_slope > SMALL_SLOPE {
+            let text = format!(
+                "an rms slope of {slope} is too steep for the theory, which neglects squares of slopes; expect errors of \
+                 some 10 %, or remove short waves (rc surface --low-pass)"
+            );
+            found.push(Warning::new(Slope, text));
+        }
+        found
+    }
+}
+
+/// Doubts about the values of a map in metres, which may have missing points.
+pub(crate) fn of_map(map: &HeightMap) -> Vec<Warning> {
+    let Suspicions { spikes, marks, counter, thin } = Suspicions::of(&map.heights);
+    let mut found = Vec::new();
+    if let Some(marks) = marks {
+        let text = format!(
+            "{} of {} m, far from all others, {} like a mark of missing points; if so, give --missing with the number in the \
+             file",
+            count(marks.count, "height"),
+            digits(marks.value, 8),
+            if marks.count == 1 { "looks" } else { "look" }
+        );
+        found.push(Warning::new(Marks, text));
+    }
+    if let Some(counter) = counter {
+        let (what, part) = match counter {
+            Counter::Row => ("row", "a heading"),
+            Counter::Column => ("column", "line numbers"),
+        };
+        let text =
+            format!("the first {what} counts 0, 1, 2, ... or 1, 2, 3, ... like {part}; if so, remove it from the file");
+        found.push(Warning::new(CounterCode, text));
+    }
+    if thin {
+        let (grid, text) = (map.heights.grid(), "may be a table of something else, as of profiles or points");
+        found.push(Warning::new(Columns, format!("a map of {} x {} points {text}", grid.nx(), grid.ny())));
+    }
+    if let Some(spikes) = spikes {
+        let text = format!(
+            "{} {} far from all neighbours, by up to {}; if measured wrongly, they carry a light load alone, so remove them \
+             before",
+            count(spikes.count, "point"),
+            if spikes.count == 1 { "stands" } else { "stand" },
+            engineering(spikes.largest, "m")
+        );
+        found.push(Warning::new(Spikes, text));
+    }
+    found
+}
+
+/// One doubt about everything that was assumed; none if nothing was.
+pub(crate) fn assumed(assumptions: &[String]) -> Option<Warning> {
+    let text = || format!("assumed: {}", assumptions.join("; "));
+    (!assumptions.is_empty()).then(|| Warning::new(Assumed, text()))
+}
+
+/// A doubt about filled points, when `missing` of `all` points were filled.
+pub(crate) fn filled(missing: usize, all: usize) -> Option<Warning> {
+    let part = missing as f64 / all as f64;
+    let text = || {
+        format!(
+            "{} % of the points ({missing} of {all}) were missing and filled, so that their heights are invented",
+            digits(100.0 * part, 3)
+        )
+    };
+    (part > FEW_FILLED).then(|| Warning::new(Missing, text()))
+}
+
+/// The doubt about filled points in the record of a folder of `rc surface`, when `path` is the map in it.
+///
+/// The map itself does not show which points were filled.
+pub(crate) fn of_record(path: &Path) -> Option<Warning> {
+    #[derive(serde::Deserialize)]
+    struct Record {
+        warnings: Vec<Warning>,
+    }
+    let folder = path.parent().filter(|_| path.file_name().is_some_and(|name| name == HEIGHTS_FILE))?;
+    let text = std::fs::read_to_string(folder.join(RECORD_FILE)).ok()?;
+    let Record { warnings } = serde_json::from_str(&text).ok()?;
+    warnings.into_iter().find(|warning| warning.code == Missing)
+}
+
+/// A doubt about a map that is solved as if it repeated itself.
+pub(crate) fn border(step: BorderStep) -> Option<Warning> {
+    let text = || {
+        format!(
+            "the heights do not repeat themselves: the step across the border is {} times that between neighbours; solve \
+             the map with --boundary free, or make it periodic (rc surface --periodic mirror)",
+            digits(step.ratio(), 3)
+        )
+    };
+    (!step.is_periodic()).then(|| Warning::new(Border, text()))
+}

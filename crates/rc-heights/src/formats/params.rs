@@ -1,0 +1,35 @@
+//! How a file is read.
+
+use super::layout::Layout;
+use super::limit::DEFAULT_MAX_BYTES;
+use super::mask::Mask;
+
+/// Choices for files that can be read in several ways.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadParams {
+    /// Name of a channel. `None` means the first channel with heights.
+    pub channel: Option<String>,
+    /// Layout of a text. `None` means the layout that its first lines suggest.
+    pub layout: Option<Layout>,
+    /// Values that mark missing points, in the numbers of the file.
+    pub missing: Vec<f64>,
+    /// What a mask in the file means.
+    pub mask: Mask,
+    /// Maximum number of bytes of memory for what a packed file unpacks to, and for the map in it.
+    pub max_bytes: u64,
+    /// Maximum number of bytes of memory for a file that is not packed, whose length already bounds what it takes.
+    pub max_plain_bytes: u64,
+}
+
+impl Default for ReadParams {
+    fn default() -> Self {
+        Self {
+            channel: None,
+            layout: None,
+            missing: Vec::new(),
+            mask: Mask::default(),
+            max_bytes: DEFAULT_MAX_BYTES,
+            max_plain_bytes: u64::MAX,
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Doubts about an input or a result, each with a code.
+//!
+//! This is the data of a warning. Who computes the numbers decides when one is due.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// A doubt about an input or a result.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Warning {
+    /// The kind of doubt, for programs.
+    pub code: WarningCode,
+    /// What is doubtful and what would help, in one line.
+    pub text: String,
+}
+
+/// The kind of a [`Warning`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum WarningCode {
+    /// Heights are probably in another unit than the cell.
+    Units,
+    /// Slopes are too large for the theory of small slopes.
+    Slope,
+    /// Pressures are too large for the theory of small strains.
+    Load,
+    /// Single points stand out from all their neighbours.
+    Spikes,
+    /// Many points were not measured, but filled.
+    Missing,
+    /// Values look like marks of missing points.
+    Marks,
+    /// A row or column looks like line numbers.
+    Counter,
+    /// A map has so few columns or rows that it may be a table of something else.
+    Columns,
+    /// A unit, a size or a spacing was assumed.
+    Assumed,
+    /// The map does not repeat itself, but is solved as if it did.
+    Border,
+    /// The grid is too coarse.
+    Coarse,
+}
+
+impl Warning {
+    /// A warning with this code and text.
+    #[must_use]
+    pub fn new(code: WarningCode, text: impl ToString) -> Self {
+        Self { code, text: text.to_string() }
+    }
+}
+
+impl WarningCode {
+    /// All codes.
+    pub const ALL: [Self; 11] = [
+        Self::Units,
+        Self::Slope,
+        Self::Load,
+        Self::Spikes,
+        Self::Missing,
+        Self::Marks,
+        Self::Counter,
+        Self::Columns,
+        Self::Assumed,
+        Self::Border,
+        Self::Coarse,
+    ];
+
+    /// What the code means, in a few words.
+    #[must_use]
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Units => "units of heights or the size are doubtful",
+            Self::Slope => "slopes are too steep for the theory",
+            Self::Load => "pressures are too large for the theory",
+            Self::Spikes => "single points stand far from all neighbours",
+            Self::Missing => "many points were filled",
+            Self::Marks => "heights look like marks of missing points",
+            Self::Counter => "a row or column looks like line numbers",
+            Self::Columns => "the map has very few rows or columns",
+            Self::Assumed => "a unit, a size or a spacing was assumed",
+            Self::Border => "the map does not repeat itself",
+            Self::Coarse => "the grid is too coarse",
+        }
+    }
+
+    /// The code as text.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Units => "units",
+            Self::Slope => "slope",
+            Self::Load => "load",
+            Self::Spikes => "spikes",
+            Self::Missing => "missing",
+            Self::Marks => "marks",
+            Self::Counter => "counter",
+            Self::Columns => "columns",
+            Self::Assumed => "assumed",
+            Self::Border => "border",
+            Self::Coarse => "coarse",
+        }
+    }
+}
+
+impl fmt::Display for WarningCode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_code_is_written_as_its_name() {
+        let warning = Warning::new(WarningCode::Spikes, "8 points");
+        let json = serde_json::to_string(&warning).expect("JSON");
+        assert_eq!(json, r#"{"code":"spikes","text":"8 points"}"#);
+        assert_eq!(serde_json::from_str::<Warning>(&json).expect("a warning"), warning);
+        assert_eq!(warning.code.to_string(), "spikes");
+    }
+}
