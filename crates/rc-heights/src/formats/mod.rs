@@ -62,7 +62,6 @@ pub use mat::{MatArray, mat_arrays};
 pub(crate) use netcdf::hdf5_table;
 
 use self::channel::{Channels, chosen, named, only};
-use self::heading::Heading;
 use crate::{FormatError, HeightMap, ReadError};
 
 /// Choices for files that can be read in several ways.
@@ -108,7 +107,7 @@ pub fn format_of(path: &Path) -> Result<Format, ReadError> {
 pub fn may_have_sides(path: &Path, params: &ReadParams) -> Result<bool, ReadError> {
     let file = Opened::new(path, params.max_bytes)?;
     Ok(match layout::format(file.format, params.layout) {
-        Format::Csv => Heading::of(&decoded(&file.bytes)).is_ok_and(|heading| heading.says_sides()),
+        Format::Csv => text::may_have_sides(&file.bytes),
         format => format.has_sides(),
     })
 }

@@ -11,5 +11,7 @@ mod instruments;
 mod parts;
 mod programs;
 mod robustness;
+mod text_marks;
+mod text_tables;
 mod texts;
 mod treatments;
