@@ -244,7 +244,8 @@ fn a_wrong_value_in_a_scene_file_is_named_with_its_line_and_key() {
     place.write("scene.bin", [0xff, 0, 2, 3]);
     let message = "scene.bin: not a scene file, which is text (TOML); for a height map give";
     assert_refused(&place.run(&["solve", "scene.bin"]), message);
-    assert_refused(&place.run(&["solve", "."]), "a folder without scene.toml");
+    std::fs::create_dir(place.path("empty")).expect("a folder");
+    assert_refused(&place.run(&["solve", "empty"]), "a folder without scene.toml");
 }
 
 #[test]

@@ -40,16 +40,7 @@ fn irregular(message: String) -> FormatError {
 /// when they are on one line.
 pub(super) fn on_grid(points: &[[f64; 3]]) -> Result<HeightMap, FormatError> {
     let axes = [Axis::of("x", points, 0)?, Axis::of("y", points, 1)?];
-    let most = (MOST_MISSING * points.len()) as f64;
-    if axes[0].n * axes[1].n > most {
-        let message = format!(
-            "{} points on {} x {} grid lines; fewer than one in {MOST_MISSING} is present",
-            points.len(),
-            axes[0].n,
-            axes[1].n
-        );
-        return Err(irregular(message));
-    }
+    check_density(&axes, points.len())?;
     let grid = Grid::new(axes[0].n as usize, axes[1].n as usize)?;
     let mut values = vec![f64::NAN; grid.len()];
     let mut seen = vec![false; grid.len()];
@@ -69,6 +60,27 @@ pub(super) fn on_grid(points: &[[f64; 3]]) -> Result<HeightMap, FormatError> {
     Ok(map)
 }
 
+/// Refuses grids of which few points are there.
+fn check_density(axes: &[Axis; 2], points: usize) -> Result<(), FormatError> {
+    if axes[0].n * axes[1].n <= (MOST_MISSING * points) as f64 {
+        return Ok(());
+    }
+    // Coordinates with few decimals are on a fine grid, of which few points are there.
+    if let Some(farthest) = axes.iter().find_map(|axis| axis.of_coarser.filter(|farthest| *farthest < 0.5)) {
+        return Err(too_far("the coordinates", farthest));
+    }
+    let lines = axes.each_ref().map(|axis| axis.n);
+    let message = format!("{points} points on {} x {} grid lines", lines[0], lines[1]);
+    Err(irregular(format!("{message}; fewer than one in {MOST_MISSING} is present")))
+}
+
+fn too_far(what: &str, farthest: f64) -> FormatError {
+    let farthest = digits(farthest.min(0.5), 2);
+    irregular(format!(
+        "{what} are up to {farthest} spacings from even grid lines, and points are moved by at most a tenth of one"
+    ))
+}
+
 /// Grid lines in even steps along one axis.
 struct Axis {
     first: f64,
@@ -77,6 +89,8 @@ struct Axis {
     n: f64,
     /// Largest distance of a coordinate from its line, in steps.
     farthest: f64,
+    /// The same for coarser lines, from which coordinates are too far.
+    of_coarser: Option<f64>,
     /// Whether coordinates differ from those of the lines by more than their rounding.
     is_moved: bool,
 }
@@ -93,27 +107,23 @@ impl Axis {
             let what = if axis == 0 { "a list of points with one x" } else { "a list of points with one y" };
             return Err(FormatError::profile_in_text(what));
         }
-        let mut best: Option<Self> = None;
+        let mut of_coarser: Option<f64> = None;
         for gap in gaps_between_lines(&all) {
-            let Some(found) = Self::with_gap(&all, gap) else { continue };
-            if found.farthest <= FARTHEST {
-                return Ok(found);
-            }
-            if best.as_ref().is_none_or(|best| found.farthest < best.farthest) {
-                best = Some(found);
+            match Self::with_gap(&all, gap) {
+                Some(found) if found.farthest <= FARTHEST => return Ok(Self { of_coarser, ..found }),
+                Some(found) => {
+                    of_coarser = Some(of_coarser.map_or(found.farthest, |other| other.min(found.farthest)));
+                }
+                None => {}
             }
         }
         // Coordinates without gaps are anywhere between two lines.
-        let farthest = best.map_or(0.5, |best| best.farthest.min(0.5));
-        Err(irregular(format!(
-            "values of {name} are up to {} spacings from even grid lines, and points are moved by at most a tenth",
-            digits(farthest, 2)
-        )))
+        Err(too_far(&format!("values of {name}"), of_coarser.unwrap_or(0.5)))
     }
 
     /// The lines of sorted coordinates, where larger gaps than `gap` are between lines.
     ///
-    /// `None` if they have no even steps.
+    /// `None` if they have no even steps, or if few of the lines are there.
     fn with_gap(all: &[f64], gap: f64) -> Option<Self> {
         let lines: Vec<&[f64]> = all.chunk_by(|a, b| b - a <= gap).collect();
         let width = |line: &[f64]| line[line.len() - 1] - line[0];
@@ -136,7 +146,15 @@ impl Axis {
         };
         let farthest = lines.iter().zip(&numbers).map(distance).fold(0.0, f64::max);
         let n = numbers[numbers.len() - 1] + 1.0;
-        Some(Self { first, step, n, farthest, is_moved: !is_exact || farthest > ROUNDING })
+        let is_moved = !is_exact || farthest > ROUNDING;
+        (n <= (MOST_MISSING * lines.len()) as f64).then_some(Self {
+            first,
+            step,
+            n,
+            farthest,
+            of_coarser: None,
+            is_moved,
+        })
     }
 
     /// The grid line of a coordinate.
@@ -229,7 +247,7 @@ mod tests {
                 let points = cloud(nx, ny, spacing, jitter, seed as u64);
                 let map = on_grid(&points).unwrap_or_else(|error| panic!("{jitter}: {error}"));
                 assert_eq!((map.heights.grid().nx(), map.heights.grid().ny()), (nx, ny), "{jitter}");
-                let right = |(i, z): (usize, &f64)| z.is_nan() || *z == i as f64;
+                let right = |(i, z): (usize, &f64)| z.is_nan() || (z - i as f64).abs() < 0.5;
                 assert!(map.heights.values().iter().enumerate().all(right), "{jitter}");
                 assert_eq!(map.missing(), nx * ny - points.len());
                 let sides = map.sides.expect("sides");
@@ -243,7 +261,7 @@ mod tests {
                 }
                 match map.notes.as_slice() {
                     [ReadNote::Moved { largest }] => {
-                        assert!((largest / jitter - 1.0).abs() < 0.2, "{largest} {jitter}")
+                        assert!((largest / jitter - 1.0).abs() < 0.2, "{largest} {jitter}");
                     }
                     notes => assert!(jitter < 1e-5 && notes.is_empty(), "{jitter}: {notes:?}"),
                 }
@@ -253,16 +271,27 @@ mod tests {
 
     #[test]
     fn points_farther_away_are_refused_with_their_distance() {
-        for (jitter, figure) in [(0.13, "0.1"), (0.16, "0.1"), (0.3, "spacings"), (0.5, "spacings")] {
-            let error = on_grid(&cloud(40, 30, [1.0, 2.0], jitter, 5)).expect_err("too far").to_string();
-            assert!(error.contains(figure) && error.contains("a tenth") && !error.contains('\n'), "{jitter}: {error}");
+        for (seed, jitter) in [0.12, 0.16, 0.2, 0.3, 0.4, 0.5].into_iter().enumerate() {
+            let exact = cloud(50, 40, [1.0, 2.0], jitter, seed as u64);
+            // With few decimals, coordinates are on a fine grid.
+            let rounded = exact.iter().map(|point| point.map(|at| (at * 100.0).round() / 100.0)).collect();
+            for points in [exact, rounded] {
+                let error = on_grid(&points).expect_err("too far").to_string();
+                let figure =
+                    error.split_once("up to ").and_then(|(_, rest)| rest.split(' ').next()?.parse::<f64>().ok());
+                // Points between two lines have no nearest line that could be known.
+                let is_right = figure.map_or(jitter > 0.25, |figure| (figure - jitter).abs() < 0.02 || jitter > 0.25);
+                assert!(is_right && !error.contains('\n'), "{jitter}: {error}");
+            }
         }
     }
 
     #[test]
     fn whole_lines_may_be_missing_and_points_on_one_line_are_a_profile() {
-        let points: Vec<[f64; 3]> =
-            (0..60).map(|i| [f64::from(i % 6), f64::from(i / 6), 1.0]).filter(|point| point[0] != 3.0).collect();
+        let points: Vec<[f64; 3]> = (0..60)
+            .map(|i| [f64::from(i % 6), f64::from(i / 6), 1.0])
+            .filter(|point| (point[0] - 3.0).abs() > 0.5)
+            .collect();
         let map = on_grid(&points).expect("a map");
         assert_eq!((map.heights.grid().nx(), map.heights.grid().ny(), map.missing()), (6, 10, 10));
         let line: Vec<[f64; 3]> = (0..9).map(|i| [f64::from(i), 2.0, 1.0]).collect();

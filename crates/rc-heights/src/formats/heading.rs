@@ -135,6 +135,7 @@ impl Heading {
         let (name, beside) = name_and_unit(name);
         let Some(known) = Name::of(&name) else { return false };
         let value = value.trim().trim_start_matches(['=', ':']).trim();
+        let plain = value.trim_matches(|c: char| c.is_whitespace() || "\"',;".contains(c));
         match known {
             Name::Side(axis) => self.sides[axis] = one(value, &beside),
             Name::Sides => match lengths(value, &beside).as_deref() {
@@ -149,19 +150,19 @@ impl Heading {
                 _ => {}
             },
             Name::Count(axis) => self.counts[axis] = count(value).or(self.counts[axis]),
-            Name::HeightUnit => self.unit = Some(unquoted(value).to_owned()),
+            Name::HeightUnit => self.unit = Some(plain.to_owned()),
             Name::HeightRange => {
                 let unit = value.trim_start_matches(|c: char| c.is_ascii_digit() || "+-.,eE ".contains(c));
                 self.unit = Some(if unit.is_empty() { beside } else { unit.to_owned() });
             }
-            Name::Unit => match unit_of(unquoted(value)) {
+            Name::Unit => match unit_of(plain) {
                 Some(unit) => self.of_all = Some(unit),
-                None => self.unit = self.unit.take().or_else(|| Some(unquoted(value).to_owned())),
+                None => self.unit = self.unit.take().or_else(|| Some(plain.to_owned())),
             },
-            Name::Channel => unquoted(value).clone_into(&mut self.channel),
+            Name::Channel => plain.clone_into(&mut self.channel),
             Name::ImageData => self.image(value),
             Name::Metres => self.metres = number(value, true),
-            Name::Missing => self.missing.extend(number(unquoted(value), true).filter(|mark| mark.is_finite())),
+            Name::Missing => self.missing.extend(number(plain, true).filter(|mark| mark.is_finite())),
         }
         true
     }
@@ -258,7 +259,10 @@ fn begins_numbers(row: &str) -> bool {
     let Some(first) = words.next() else { return false };
     let is_digit = |c: char| c.is_ascii_digit() || "+-.".contains(c);
     let is_number = cell(first, comma).is_some_and(|value| !value.is_nan()) && unquoted(first).starts_with(is_digit);
-    is_number || words.next().is_some() && is_row_of_cells(row)
+    // A mark and a number alone are the declaration of a mark.
+    let is_field = |rest: usize| rest == 1 && Name::of(first) == Some(Name::Missing);
+    let rest = words.count();
+    is_number || rest > 0 && !is_field(rest) && is_row_of_cells(row)
 }
 
 /// The name of a field without what is in brackets: an axis, which belongs to the name, or a unit.

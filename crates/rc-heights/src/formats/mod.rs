@@ -77,7 +77,6 @@ pub use params::ReadParams;
 pub use points::of_points;
 
 use self::channel::{Channels, chosen, named, only};
-use self::heading::Heading;
 use self::opened::Opened;
 use crate::{FormatError, HeightMap, ReadError};
 
@@ -105,7 +104,7 @@ pub fn may_have_sides(path: &Path, params: &ReadParams) -> Result<bool, ReadErro
         return bytes.map(|bytes| says_sides(&bytes)).map_err(|problem| ReadError { path: path.to_owned(), problem });
     }
     Ok(match format {
-        Format::Csv => Heading::of(&decoded(&file.start)).is_ok_and(|heading| heading.says_sides()),
+        Format::Csv => text::may_have_sides(&file.start),
         format => format.has_sides(),
     })
 }

@@ -242,6 +242,7 @@ const NAMES: &[(Name, &[&str])] = &[
             "numberofpixelsx",
             "xres",
             "xdatapoints",
+            "horizontal",
         ],
     ),
     (
@@ -269,6 +270,7 @@ const NAMES: &[(Name, &[&str])] = &[
             "numberofpixelsy",
             "yres",
             "ydatapoints",
+            "vertical",
         ],
     ),
     (

@@ -18,6 +18,7 @@ impl Format {
     /// | `.sur` | top | Gwyddion (surffile) and SurfaceTopography show it so |
     /// | `.al3d`, `.plu`, `.plux`, `.vk4`, MetroPro | top | the same for alicona, sensofar, keyence, metropro |
     /// | `.sdf`, `.x3p` | bottom | ISO 25178-71 and -72: the first profile has the lowest y (Gwyddion draws it at the top) |
+    /// | ESRI grids | top | help of ArcGIS: the first row of the data is at the top |
     /// | Nanoscope | bottom | Gwyddion (nanoscope) and SurfaceTopography turn the image for their pictures |
     /// | Igor, Wyko | bottom | the same for igorfile, opdfile |
     /// | Surfer | bottom | help of Golden Software: the first row has the lowest y |
@@ -34,7 +35,8 @@ impl Format {
             | Self::Plu
             | Self::Plux
             | Self::Vk4
-            | Self::MetroPro => true,
+            | Self::MetroPro
+            | Self::EsriGrid => true,
             Self::Nanoscope
             | Self::Sdf
             | Self::X3p
@@ -43,7 +45,6 @@ impl Format {
             | Self::Surfer
             | Self::Npy
             | Self::Csv
-            | Self::EsriGrid
             | Self::Zygo
             | Self::Xyz
             | Self::Hdf5
@@ -70,5 +71,6 @@ fn is_exported_by_gwyddion(bytes: &[u8]) -> bool {
     // The titles are in the first lines, in any language and encoding.
     let start = decoded(&bytes[..bytes.len().min(4096)]);
     let comments = start.lines().take(3).filter(|line| line.starts_with('#') && line.contains(':'));
-    comments.count() == 3 && Heading::of(&start).is_ok_and(|heading| heading.says_sides())
+    comments.count() == 3
+        && Heading::of(&start).is_ok_and(|heading| heading.says_sides() && !heading.channel.is_empty())
 }

@@ -2,7 +2,6 @@
 //!
 //! The name is used if the format has no mark.
 
-use std::borrow::Cow;
 use std::path::Path;
 
 use super::archive::{self, ZIP};
@@ -143,7 +142,8 @@ impl Format {
 fn of_text(start: &[u8]) -> Option<Format> {
     // A file that was unpacked is here completely.
     let start = &start[..start.len().min(4096)];
-    let text = if is_text(start) { decoded(start) } else { Cow::Borrowed("") };
+    // A binary file may begin with a text.
+    let text = decoded(if is_text(start) { start } else { start.split(|byte| *byte == 0).next().unwrap_or_default() });
     let begins = |words: &str| text.trim_start().starts_with(words);
     if begins(zygo::XYZ) || begins(zygo::ASCII) {
         return Some(Format::Zygo);

@@ -11,6 +11,7 @@ use super::decode::decoded;
 use super::field::{field, flip};
 use super::heading::Heading;
 use super::layout::Layout;
+use super::lines::{data_lines, words};
 use super::marks::Marks;
 use super::table::Table;
 use crate::{FormatError, HeightMap, LengthUnit, ReadNote, Unit};
@@ -31,6 +32,15 @@ pub fn parse(bytes: &[u8]) -> Result<Field, FormatError> {
     Ok(field(table.grid()?, table.values))
 }
 
+/// Whether the first lines of a text have the size of the map, or may have coordinates at its borders.
+pub(super) fn may_have_sides(start: &[u8]) -> bool {
+    let text = decoded(start);
+    let Ok(heading) = Heading::of(&text) else { return false };
+    let first = data_lines(&text, heading.first).next();
+    let has_corner = first.is_some_and(|(_, row)| words(row).0.next().is_some_and(str::is_empty));
+    heading.says_sides() || heading.titles.numbers().is_some() || has_corner
+}
+
 /// The channel of a text. Its name is in the lines before the numbers.
 ///
 /// `missing` has the marks of missing points that the user gives.
@@ -46,7 +56,7 @@ pub(super) fn channels<'a>(bytes: &'a [u8], layout: Option<Layout>, missing: &[f
 fn map(text: &str, heading: &Heading, layout: Option<Layout>, marks: &Marks) -> Result<HeightMap, FormatError> {
     let mut table = Table::of(text, heading)?.of_heights(heading)?;
     let [nx, ny] = table.size;
-    if let (Some(what), None, false) = (profile(nx, ny), layout, heading.is_of_rows()) {
+    if let (Some(what), None) = (profile(nx, ny, heading), layout) {
         return Err(FormatError::profile_in_text(what));
     }
     marks.erase(&mut table.values);
@@ -72,10 +82,11 @@ fn map(text: &str, heading: &Heading, layout: Option<Layout>, marks: &Marks) -> 
 }
 
 /// What a table of so few columns or rows is, if it is a profile.
-fn profile(nx: usize, ny: usize) -> Option<&'static str> {
+fn profile(nx: usize, ny: usize, heading: &Heading) -> Option<&'static str> {
     match (nx, ny) {
         (1, _) => Some("a text of one column"),
-        (2, _) => Some("a text of two columns, as position and height,"),
+        // A map may be narrow if its size is known.
+        (2, _) if !heading.is_of_rows() => Some("a text of two columns, as position and height,"),
         (_, 1) => Some("a text of one row"),
         _ => None,
     }

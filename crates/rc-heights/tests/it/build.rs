@@ -28,6 +28,28 @@ pub(crate) fn npy() -> Vec<u8> {
     [b"\x93NUMPY\x01\x00".as_slice(), &(header.len() as u16).to_le_bytes(), header.as_bytes(), &f64s(HEIGHTS)].concat()
 }
 
+/// A text of Zygo of three by two pixels of 2 µm, XYZ or ASCII.
+pub(crate) fn zygo(kind: &str, body: &str) -> Vec<u8> {
+    let lines = [
+        &format!("Zygo {kind} Data File - Format 1"),
+        "0 3 0 0 \"Tue Aug 25 16:59:23 2026\"",
+        "0 0 3 2 1 255",
+        "0 0 3 2",
+        "\"\"",
+        "\"\"",
+        "\"\"",
+        "0 0.5 6.328e-07 0 1 0 2e-06 1787677163",
+        "3 2 0 0 0 666666 0 \"\"",
+        "0 0 1 33 0 0 0.1 60.4318 2 50",
+        "1 1 100 0 0 0 0 0 0 0",
+        "0 \"\"",
+        "1.5 0",
+        "#",
+        body,
+    ];
+    lines.join("\n").into_bytes()
+}
+
 /// Grid lines at x = 10, 12, 14 and y = 5, 8.
 pub(crate) fn surfer_text(heights: &str) -> Vec<u8> {
     format!("DSAA\n3 2\n10 14\n5 8\n1 6\n{heights}\n").into_bytes()
@@ -253,6 +275,12 @@ pub(crate) fn all() -> Vec<(&'static str, Format, Vec<u8>)> {
         ("npy", Format::Npy, npy()),
         ("csv", Format::Csv, b"1,2,3\n4,5,6\n".to_vec()),
         ("xyz", Format::Xyz, b"0 0 1\n1 0 2\n2 0 3\n0 1 4\n1 1 5\n2 1 6\n".to_vec()),
+        ("csv of pandas", Format::Csv, b",0,1,2\n0,1.5,2,3\n1,4,NA,6\n".to_vec()),
+        ("csv with coordinates", Format::Csv, b"y [um],0,1,2\n0,1,2,3\n2,4,,6\n4,7,8,9\n".to_vec()),
+        ("points near a grid", Format::Xyz, b"X,Y,Z\n0,0,1\n1.01,0.02,2\n1.99,0,3\n0,1,4\n1,1,5\n2.01,1,6\n".to_vec()),
+        ("ESRI", Format::EsriGrid, b"NCOLS 3\nNROWS 2\nCELLSIZE 2\n1 2 3\n4 -9999 6\n".to_vec()),
+        ("Zygo XYZ", Format::Zygo, zygo("XYZ", "0 0 4\n1 0 No Data\n2 0 6\n0 1 1\n1 1 2\n2 1 3\n#\n")),
+        ("Zygo ASCII", Format::Zygo, zygo("ASCII", "#\n1 2 3\n4 5 2147483640\n#\n")),
         ("DSAA", Format::Surfer, surfer_text("1 2 3\n4 5 6")),
         ("DSBB", Format::Surfer, surfer_6(HEIGHTS)),
         ("DSRB", Format::Surfer, surfer_7(1, HEIGHTS, 1.70141e38)),

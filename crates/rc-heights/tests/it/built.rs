@@ -78,7 +78,7 @@ fn a_simple_field_has_its_units() {
     assert_eq!(unnamed(1.0).sides, None);
     assert_eq!((unnamed(6.0).sides, unnamed(6.0).side_unit), (Some([6.0, 6.0]), Unit::Unnamed));
     let assumed =
-        |unit| unnamed(6.0).in_metres(Scales { unit, height_scale: None }).expect("lengths").sides_are_assumed();
+        |unit| unnamed(6.0).in_metres(Scales { unit, ..Scales::default() }).expect("lengths").sides_are_assumed();
     assert_eq!((assumed(None), assumed(Some(LengthUnit::Micrometre))), (true, false));
     for other in ["V", "A"] {
         let map = read("gsf", &build::gsf(&format!("XRes=3\nYRes=2\nZUnits={other}\n")), Format::Gsf);

@@ -15,5 +15,7 @@ mod parts;
 mod programs;
 mod robustness;
 mod suspicions;
+mod text_marks;
+mod text_tables;
 mod texts;
 mod treatments;

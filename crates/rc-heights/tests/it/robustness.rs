@@ -41,7 +41,7 @@ fn every_truncation_of_every_file_is_refused_or_still_whole() {
             let answer = parse(&bytes[..length], format);
             assert_answer(name, &bytes, &answer);
             // Texts may end anywhere. The bytes after the heights (remarks, end marks, directories) may be missing.
-            let text = matches!(format, Format::Csv | Format::Xyz);
+            let text = matches!(format, Format::Csv | Format::Xyz | Format::EsriGrid | Format::Zygo);
             if let (Ok(map), false) = (answer, text) {
                 let same = map.heights.grid() == whole.heights.grid() && map.missing() == whole.missing();
                 assert!(same, "{name}: {length} of {} bytes were read as another map", bytes.len());
@@ -103,9 +103,24 @@ proptest! {
     }
 
     #[test]
-    fn texts_of_numbers_never_panic(text in "[-0-9eE.,; \\n#naif\\t]{0,200}") {
+    fn texts_of_numbers_never_panic(text in "[-0-9eE.,; \\n#naif\\t\"D*]{0,200}") {
         for format in [Format::Csv, Format::Xyz] {
             assert_answer("text", text.as_bytes(), &parse(text.as_bytes(), format));
+        }
+        let zygo = String::from_utf8(build::zygo("XYZ", "")).expect("a text");
+        let ascii = String::from_utf8(build::zygo("ASCII", "#\n")).expect("a text");
+        for (head, format) in [
+            ("ncols 3\nnrows 2\ncellsize 2\n", Format::EsriGrid),
+            ("# Width: 3 um\n# dx=2 nm, dy=3\nno data: 1\n", Format::Csv),
+            ("nx: 3\nny: 2\npixel size: 1 um\n", Format::Csv),
+            ("y/x [um],0,1,2\n", Format::Csv),
+            (",0,1,2\n", Format::Csv),
+            (",x,y,z\n", Format::Xyz),
+            ("# x [um]  y [um]  z [nm]\n", Format::Xyz),
+            (zygo.as_str(), Format::Zygo),
+            (ascii.as_str(), Format::Zygo),
+        ] {
+            assert_answer(head, (head.to_owned() + &text).as_bytes(), &parse((head.to_owned() + &text).as_bytes(), format));
         }
         for head in ["DSAA\n3 2\n0 1\n0 1\n0 1\n", "aISO-1.0\n"] {
             let bytes = [head.as_bytes(), text.as_bytes()].concat();
