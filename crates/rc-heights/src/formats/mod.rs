@@ -5,6 +5,7 @@ mod archive;
 mod axes;
 mod binary;
 mod channel;
+mod datx;
 mod decode;
 mod endian;
 mod field;
@@ -112,6 +113,7 @@ pub fn may_have_sides(path: &Path, params: &ReadParams) -> Result<bool, ReadErro
         return bytes.map(|bytes| says_sides(&bytes)).map_err(|problem| ReadError { path: path.to_owned(), problem });
     }
     Ok(match format {
+        Format::Npy => npy::has_points(&file.start, params.layout),
         Format::Csv => Heading::of(&decoded(&file.start)).is_ok_and(|heading| heading.says_sides()),
         format => format.has_sides(),
     })
