@@ -4,7 +4,7 @@
 //! first bytes, or by the extension if the format has no mark:
 //!
 //! - text as instruments and Gwyddion export it, and lists of `x y z`;
-//! - arrays: `.npy`, `.mat`, `.h5`, `.nc`;
+//! - arrays: `.npy`, `.mat`, `.h5`, `.nc`, as maps or as points;
 //! - files of programs and standards: Gwyddion `.gwy` and `.gsf`, Surfer `.grd`, Igor `.ibw`, ISO 25178-71 `.sdf`, ISO
 //!   5436-2 `.x3p`;
 //! - files of instruments: Digital Surf `.sur`, Nanoscope `.spm`, Wyko `.opd`, MetroPro `.dat`, Alicona `.al3d`,
@@ -22,8 +22,9 @@
 //! size.
 //!
 //! A reader neither panics nor takes more memory than the bytes of the file justify, for any input. It compares the
-//! sizes in a header with the available bytes before it takes memory. `tests/it/robustness.rs` tests this with
-//! arbitrary and with mutated files.
+//! sizes in a header with the available bytes before it takes memory, and what a file unpacks to with
+//! [`ReadParams::max_bytes`]. `tests/it/robustness.rs` tests this with arbitrary and with mutated files, and
+//! `tests/it/bombs.rs` with small files that unpack to large ones.
 //!
 //! ```
 //! use rc_heights::{AreaParameters, Format, Level, Scales, Treatment, apply, parse};

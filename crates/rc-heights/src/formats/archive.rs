@@ -52,6 +52,13 @@ pub(super) fn format_of_zip(path: &Path, bytes: &[u8]) -> Result<Format, FormatE
     if let Some((_, format)) = FORMATS.iter().find(|(name, _)| has(name)) {
         return Ok(*format);
     }
+    let arrays: Option<Vec<&str>> = names.iter().map(|name| name.strip_suffix(".npy")).collect();
+    if let Some(arrays) = arrays.filter(|arrays| !arrays.is_empty()) {
+        let first: Vec<String> = arrays.iter().take(5).map(|name| shown(name)).collect();
+        let first = first.join(", ") + if arrays.len() > 5 { ", …" } else { "" };
+        let what = format!("a NumPy archive (.npz) of {first}; save the array of heights with numpy.save, as .npy");
+        return Err(FormatError::Other { what });
+    }
     let other = OTHERS.iter().find(|(name, _)| has(name)).map(|(_, what)| (*what).to_owned());
     let listed = || {
         let more = if names.len() > 3 { ", …" } else { "" };

@@ -66,7 +66,7 @@ pub(super) fn of_meshes(x: &[f64], y: &[f64], columns: usize) -> Option<Meshes> 
 pub(super) fn refuse_mesh(format: Format, name: &str, values: &[f64], columns: usize) -> Result<(), FormatError> {
     let rows = || values.chunks(columns);
     let same_rows = || rows().all(|row| row == &values[..columns.min(values.len())]);
-    let same_columns = || rows().all(|row| row.iter().all(|value| value == &row[0]));
+    let same_columns = || rows().all(|row| row.iter().all(|value| value.total_cmp(&row[0]).is_eq()));
     let is_mesh = axis_of(name).is_some() && (same_rows() || same_columns());
     if is_mesh { Err(FormatError::Missing { format, field: "an array beside the coordinates" }) } else { Ok(()) }
 }

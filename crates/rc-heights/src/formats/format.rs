@@ -3,7 +3,7 @@
 /// A format of height maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
-    /// NumPy array with two dimensions.
+    /// NumPy array with two dimensions, or records of points.
     Npy,
     /// Numbers as text, with one row of the map in each line.
     Csv,
@@ -19,11 +19,11 @@ pub enum Format {
     Gsf,
     /// Gwyddion native file, version 2.
     Gwy,
-    /// HDF5 with arrays of two dimensions.
+    /// HDF5 with arrays of two or three dimensions.
     Hdf5,
     /// Igor Pro binary wave, version 5.
     Ibw,
-    /// MATLAB 5 with arrays of two dimensions.
+    /// MATLAB 5 with arrays of two or more dimensions.
     Mat,
     /// NetCDF, classic and 64-bit.
     NetCdf,
@@ -33,7 +33,7 @@ pub enum Format {
     X3p,
     /// PNG, 16-bit grayscale.
     Png,
-    /// TIFF, grayscale of 16 bits or of 32-bit floats.
+    /// TIFF and BigTIFF, grayscale of 16 bits or more, as integers or floats.
     Tiff,
     /// Digital Surf, plain or compressed.
     Sur,

@@ -18,6 +18,9 @@ pub const DEFAULT_MAX_BYTES: u64 = 4 << 30;
 /// Bytes that are read between two checks.
 const CHUNK: u64 = 1 << 20;
 
+/// Maximum length of a word of a text. Texts before the numbers may have a picture in one word.
+const LONGEST_WORD: usize = 16 << 20;
+
 /// Bytes of a height in memory.
 const HEIGHT: u64 = 8;
 
@@ -89,13 +92,14 @@ pub(super) struct Text {
     values: u64,
     /// Values in the line so far.
     in_line: usize,
+    in_word: usize,
     line: usize,
     after_separator: bool,
 }
 
 impl Text {
     fn new(number: u64) -> Self {
-        Self { number, bytes: 0, high: 0, zeros: 0, values: 0, in_line: 0, line: 1, after_separator: true }
+        Self { number, bytes: 0, high: 0, zeros: 0, values: 0, in_line: 0, in_word: 0, line: 1, after_separator: true }
     }
 
     /// Counts the values in the next bytes.
@@ -122,8 +126,9 @@ impl Text {
                     self.high += u64::from(*byte > 127);
                     self.values += u64::from(self.after_separator);
                     self.in_line += usize::from(self.after_separator);
+                    self.in_word = if self.after_separator { 1 } else { self.in_word + 1 };
                     self.after_separator = false;
-                    if self.in_line > Grid::MAX_SIDE {
+                    if self.in_line > Grid::MAX_SIDE || self.in_word > LONGEST_WORD {
                         return Err(self.endless());
                     }
                 }
@@ -134,6 +139,10 @@ impl Text {
     }
 
     fn endless(&self) -> FormatError {
+        if self.in_word > LONGEST_WORD {
+            let text = format!("a word of more than {LONGEST_WORD} characters");
+            return FormatError::NoNumber { line: self.line, value: self.in_line, text };
+        }
         let expected = format!("or more, but a row has at most {}", Grid::MAX_SIDE);
         FormatError::Columns { line: self.line, found: self.in_line, expected }
     }

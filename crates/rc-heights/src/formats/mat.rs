@@ -179,8 +179,7 @@ impl<'a> Array<'a> {
         // Dimensions of length 1 are no dimensions, except in two.
         let long: Vec<usize> = all.iter().copied().filter(|n| *n != 1).collect();
         let (rows, columns, frames) = match (all.as_slice(), long.as_slice()) {
-            ([rows, columns], _) | ([_, _, ..], [rows, columns]) => (*rows, *columns, 1),
-            ([rows, columns, ..], []) => (*rows, *columns, 1),
+            ([rows, columns], _) | ([_, _, ..], [rows, columns]) | ([rows, columns, ..], []) => (*rows, *columns, 1),
             (_, [rows, columns, rest @ ..]) => {
                 (*rows, *columns, rest.iter().fold(1, |n: usize, m| n.saturating_mul(*m)))
             }

@@ -6,6 +6,7 @@ mod axes;
 mod binary;
 mod channel;
 mod cloud;
+mod datx;
 mod decode;
 mod endian;
 mod esri;
@@ -104,6 +105,7 @@ pub fn may_have_sides(path: &Path, params: &ReadParams) -> Result<bool, ReadErro
         return bytes.map(|bytes| says_sides(&bytes)).map_err(|problem| ReadError { path: path.to_owned(), problem });
     }
     Ok(match format {
+        Format::Npy => npy::has_points(&file.start, params.layout),
         Format::Csv => text::may_have_sides(&file.start),
         format => format.has_sides(),
     })

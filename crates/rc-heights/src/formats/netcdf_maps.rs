@@ -21,7 +21,7 @@ use super::netcdf::{Arrays, is_number, open};
 use super::netcdf_axes::{self, Beside, Coordinates};
 use super::points::{self, Kind};
 use super::scalings::{Entries, Scalings, Value};
-use super::{axes, unit};
+use super::{axes, datx, unit};
 use crate::{Format, FormatError, HeightMap, Unit};
 
 /// Maximum number of frames of an array that are channels.
@@ -108,7 +108,8 @@ fn attributes(attributes: &[NcAttribute]) -> Entries {
     // Missing values of NetCDF are applied already, to the numbers as they are stored.
     let is_applied = |name: &str| name == "missing_value";
     let kept = attributes.iter().filter(|attribute| !is_applied(&attribute.name));
-    kept.filter_map(|attribute| Some((attribute.name.clone(), value(&attribute.value)?))).collect()
+    let others = kept.filter_map(|attribute| Some((attribute.name.clone(), value(&attribute.value)?)));
+    datx::entries(attributes).into_iter().chain(others).collect()
 }
 
 /// What stands around the arrays of the group at `path`: single numbers and texts, and attributes of the group and of

@@ -90,6 +90,14 @@ pub(super) fn map(
     points::map(&npy.values()?, kind).map(of_array)
 }
 
+/// Whether the header at the start of a file is that of points.
+pub(super) fn has_points(start: &[u8], layout: Option<Layout>) -> bool {
+    Array::open(start, u64::MAX).is_ok_and(|npy| match npy.header.dtype() {
+        DType::Record(_) => true,
+        _ => npy.sides().and_then(|shape| Kind::of(Format::Npy, shape, layout)).is_ok_and(|kind| kind != Kind::Map),
+    })
+}
+
 /// The map whose numbers are those of an array, so metres by definition.
 fn of_array(map: HeightMap) -> HeightMap {
     HeightMap { height_unit: Unit::Array, side_unit: Unit::Array, ..map }

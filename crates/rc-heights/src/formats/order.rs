@@ -16,7 +16,7 @@ impl Format {
     /// | PNG, TIFF | top | PNG (third edition) and TIFF 6.0: the first row of an image is the top |
     /// | `.gwy`, `.gsf` | top | the guide of Gwyddion, "Format of Gwyddion Files" |
     /// | `.sur` | top | Gwyddion (surffile) and SurfaceTopography show it so |
-    /// | `.al3d`, `.plu`, `.plux`, `.vk4`, MetroPro | top | the same for alicona, sensofar, keyence, metropro |
+    /// | `.al3d`, `.plu`, `.plux`, `.vk4`, MetroPro, texts of Zygo | top | the same for alicona, sensofar, keyence, metropro |
     /// | `.sdf`, `.x3p` | bottom | ISO 25178-71 and -72: the first profile has the lowest y (Gwyddion draws it at the top) |
     /// | ESRI grids | top | help of ArcGIS: the first row of the data is at the top |
     /// | Nanoscope | bottom | Gwyddion (nanoscope) and SurfaceTopography turn the image for their pictures |
@@ -36,7 +36,8 @@ impl Format {
             | Self::Plux
             | Self::Vk4
             | Self::MetroPro
-            | Self::EsriGrid => true,
+            | Self::EsriGrid
+            | Self::Zygo => true,
             Self::Nanoscope
             | Self::Sdf
             | Self::X3p
@@ -45,7 +46,6 @@ impl Format {
             | Self::Surfer
             | Self::Npy
             | Self::Csv
-            | Self::Zygo
             | Self::Xyz
             | Self::Hdf5
             | Self::Mat

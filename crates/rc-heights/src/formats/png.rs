@@ -76,7 +76,9 @@ fn parse(bytes: &[u8], max_bytes: u64) -> Result<HeightMap, FormatError> {
     }
     let unit = heights.map_or(Unit::GreyLevel, |(unit, [highest, lowest])| {
         let level = (highest - lowest) / f64::from(u16::MAX);
-        values.iter_mut().for_each(|value| *value = lowest + level * *value);
+        for value in &mut values {
+            *value = lowest + level * *value;
+        }
         unit
     });
     let (sides, side_unit) = sides.map_or((None, Unit::Unnamed), |(sides, unit)| (Some(sides), unit));

@@ -87,6 +87,12 @@ pub(super) fn points(record: &Record, mut file: impl std::io::Read, n: usize) ->
     Ok(points)
 }
 
+/// Error of a header whose records are not points.
+pub(super) fn refused(found: String) -> FormatError {
+    let expected = "that of real numbers (f2, f4, f8 or an integer type), or of records with fields x, y and z";
+    FormatError::Field { format: super::Format::Npy, field: "descr", found, expected }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -105,10 +111,4 @@ mod tests {
             assert_eq!(number.value(&bytes).to_bits(), f64::to_bits(expected), "{bytes:?}");
         }
     }
-}
-
-/// Error of a header whose records are not points.
-pub(super) fn refused(found: String) -> FormatError {
-    let expected = "that of real numbers (f2, f4, f8 or an integer type), or of records with fields x, y and z";
-    FormatError::Field { format: super::Format::Npy, field: "descr", found, expected }
 }

@@ -83,6 +83,13 @@ pub(super) struct Scalings {
     missing: Vec<f64>,
 }
 
+/// The axes that a length belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Axes {
+    Both,
+    One(usize),
+}
+
 /// A name in its parts.
 struct Name {
     /// Letters and digits, in lower case.
@@ -100,16 +107,16 @@ impl Name {
     }
 
     /// Whether the word is one of the names, for all axes, or for one axis.
-    fn axis(&self, [both, one]: [&[&str]; 2]) -> Option<Option<usize>> {
+    fn axis(&self, [both, one]: [&[&str]; 2]) -> Option<Axes> {
         let word = self.word.as_str();
         if both.contains(&word) {
-            return Some(None);
+            return Some(Axes::Both);
         }
         let is_named = |rest: &str| both.contains(&rest) || one.contains(&rest);
         let is_of = |letter: char| {
             word.strip_prefix(letter).is_some_and(is_named) || word.strip_suffix(letter).is_some_and(is_named)
         };
-        ['x', 'y'].into_iter().position(is_of).map(Some)
+        ['x', 'y'].into_iter().position(is_of).map(Axes::One)
     }
 
     /// The word without `unit` or `units` at its start or end.
@@ -224,12 +231,11 @@ impl Scalings {
 }
 
 /// Stores a length for an axis, or one or two lengths for both. The first entry counts.
-fn set(lengths: &mut [Option<Length>; 2], axis: Option<usize>, numbers: &[f64], unit: Option<LengthUnit>) {
-    let found = match (axis, numbers) {
-        (Some(axis), [length]) => [0, 1].map(|i| (i == axis).then_some(*length)),
-        // Two numbers along an axis are its ends.
-        (None, [length]) => [Some(*length); 2],
-        (None, [x, y]) => [Some(*x), Some(*y)],
+fn set(lengths: &mut [Option<Length>; 2], axes: Axes, numbers: &[f64], unit: Option<LengthUnit>) {
+    let found = match (axes, numbers) {
+        (Axes::One(axis), [length]) => [0, 1].map(|i| (i == axis).then_some(*length)),
+        (Axes::Both, [length]) => [Some(*length); 2],
+        (Axes::Both, [x, y]) => [Some(*x), Some(*y)],
         _ => [None; 2],
     };
     for (to, length) in lengths.iter_mut().zip(found) {
@@ -257,25 +263,26 @@ mod tests {
 
     #[test]
     fn sizes_have_many_names() {
+        type Case = (Vec<(&'static str, Value)>, Option<([f64; 2], Unit)>);
         let grid = Grid::new(10, 20).expect("a grid");
         let (metre, unnamed) = (Unit::Metre, Unit::Unnamed);
-        let cases: [(&[(&str, Value)], Option<([f64; 2], Unit)>); 10] = [
-            (&[("pixel_size", number(0.5))], Some(([5.0, 10.0], unnamed))),
-            (&[("pixel_size_um", number(0.5))], Some(([5e-6, 10e-6], metre))),
-            (&[("dx", number(0.5)), ("dy", number(0.25))], Some(([5.0, 5.0], unnamed))),
-            (&[("PixelSizeX", number(0.5)), ("unit", text("um"))], Some(([5e-6, 10e-6], metre))),
+        let cases: [Case; 10] = [
+            (vec![("pixel_size", number(0.5))], Some(([5.0, 10.0], unnamed))),
+            (vec![("pixel_size_um", number(0.5))], Some(([5e-6, 10e-6], metre))),
+            (vec![("dx", number(0.5)), ("dy", number(0.25))], Some(([5.0, 5.0], unnamed))),
+            (vec![("PixelSizeX", number(0.5)), ("unit", text("um"))], Some(([5e-6, 10e-6], metre))),
             (
-                &[("scan_size", Value::Numbers(vec![4.0, 8.0])), ("scan_size_unit", text("nm"))],
+                vec![("scan_size", Value::Numbers(vec![4.0, 8.0])), ("scan_size_unit", text("nm"))],
                 Some(([4e-9, 8e-9], metre)),
             ),
-            (&[("XReal", number(1e-6)), ("YReal", number(2e-6))], Some(([1e-6, 2e-6], unnamed))),
-            (&[("ScanSize", text("30 um"))], Some(([30e-6, 30e-6], metre))),
-            (&[("size", Value::Numbers(vec![10.0, 20.0]))], None),
-            (&[("spacing", number(-1.0))], None),
-            (&[("temperature", number(1.0))], None),
+            (vec![("XReal", number(1e-6)), ("YReal", number(2e-6))], Some(([1e-6, 2e-6], unnamed))),
+            (vec![("ScanSize", text("30 um"))], Some(([30e-6, 30e-6], metre))),
+            (vec![("size", Value::Numbers(vec![10.0, 20.0]))], None),
+            (vec![("spacing", number(-1.0))], None),
+            (vec![("temperature", number(1.0))], None),
         ];
         for (given, expected) in cases {
-            let found = scalings(&[], given).sides(grid);
+            let found = scalings(&[], &given).sides(grid);
             let is_close = found.zip(expected).is_some_and(|((a, of_a), (b, of_b))| {
                 of_a == of_b && a.iter().zip(b).all(|(a, b)| (a / b - 1.0).abs() < 1e-12)
             });

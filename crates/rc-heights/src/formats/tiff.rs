@@ -57,8 +57,14 @@ pub(super) fn says_sides(bytes: &[u8]) -> bool {
 }
 
 fn opened(bytes: &[u8]) -> Result<Image<'_>, FormatError> {
+    if !tiff_ifd::texts_fit(bytes) {
+        let reason = "a text in it is longer than the file".to_owned();
+        return Err(FormatError::Container { format: Format::Tiff, reason });
+    }
     let mut limits = Limits::default();
-    limits.ifd_value_size = LONGEST_TAG.min(bytes.len().max(1 << 12));
+    limits.ifd_value_size = LONGEST_TAG;
+    // Texts are decoded within this limit.
+    limits.decoding_buffer_size = bytes.len();
     Ok(Decoder::new(Cursor::new(bytes)).map_err(|cause| invalid(&cause))?.with_limits(limits))
 }
 
@@ -104,6 +110,7 @@ fn read(bytes: &[u8], page: usize, max_bytes: u64) -> Result<HeightMap, FormatEr
     }
     let copies = if matches!(stored, Cow::Owned(_)) { 2 } else { 1 };
     limit::check_map(grid, size, copies * bytes.len() as u64, max_bytes)?;
+    let (sides, mark) = (tiff_sides::of(&mut image, [width, height])?, missing(&mut image));
     let mut limits = Limits::default();
     limits.ifd_value_size = LONGEST_TAG;
     limits.decoding_buffer_size = usize::try_from(needed).unwrap_or(usize::MAX);
@@ -114,10 +121,9 @@ fn read(bytes: &[u8], page: usize, max_bytes: u64) -> Result<HeightMap, FormatEr
     if values.len() != grid.len() {
         return Err(FormatError::CutShort { grid, needed, found: size * values.len() as u64 });
     }
-    if let Some(mark) = missing(&mut image) {
+    if let Some(mark) = mark {
         values.iter_mut().filter(|value| is_mark(**value, mark)).for_each(|value| *value = f64::NAN);
     }
-    let sides = tiff_sides::of(&mut image, [width, height])?;
     let (sides, side_unit) = sides.map_or((None, Unit::Unnamed), |(sides, unit)| (Some(sides), unit));
     Ok(HeightMap::new(field(grid, values), Unit::GreyLevel, sides, side_unit))
 }

@@ -9,6 +9,9 @@ const PHOTOMETRIC: u16 = 262;
 /// Tag of the type of numbers, where 1 means unsigned integers.
 const SAMPLE_FORMAT: u16 = 339;
 
+/// Type of values that are texts.
+const TEXT: u16 = 2;
+
 /// Maximum number of directories that are followed. They may refer to each other in a circle.
 const MOST: usize = 256;
 
@@ -36,6 +39,14 @@ pub(super) fn floats_as_stored(bytes: &[u8]) -> Cow<'_, [u8]> {
     Cow::Owned(changed)
 }
 
+/// Whether all texts in the directories of a file fit into it.
+pub(super) fn texts_fit(bytes: &[u8]) -> bool {
+    Directories::of(bytes).is_none_or(|directories| {
+        let fits = |at: usize| directories.u16(at + 2) != TEXT || directories.place(at + 4) < bytes.len();
+        directories.all().into_iter().flatten().all(fits)
+    })
+}
+
 impl<'a> Directories<'a> {
     fn of(bytes: &'a [u8]) -> Option<Self> {
         let order = match bytes.get(..2)? {
@@ -46,25 +57,30 @@ impl<'a> Directories<'a> {
         Some(Self { bytes, order, is_big: order.i16_at(bytes, 2) == 43 })
     }
 
-    /// The lower byte of the meaning of levels, in each directory whose numbers are not unsigned.
-    fn inverted(&self) -> Vec<usize> {
+    /// Places of the entries of each directory.
+    fn all(&self) -> Vec<Vec<usize>> {
         let (mut at, mut found) = (self.place(if self.is_big { 8 } else { 4 }), Vec::new());
-        for _ in 0..MOST {
+        while found.len() < MOST {
             let (first, n) = self.entries(at);
             if n == 0 {
                 break;
             }
-            let entry = |tag| (0..n).map(|i| first + i * self.entry()).find(|at| self.u16(*at) == tag);
-            let value = |tag| entry(tag).map(|at| at + if self.is_big { 12 } else { 8 });
-            if let (Some(meaning), Some(kind)) = (value(PHOTOMETRIC), value(SAMPLE_FORMAT))
-                && self.u16(meaning) == 0
-                && self.u16(kind) > 1
-            {
-                found.push(meaning + usize::from(self.order == Endian::Big));
-            }
+            found.push((0..n).map(|i| first + i * self.entry()).collect());
             at = self.place(first + n * self.entry());
         }
         found
+    }
+
+    /// The lower byte of the meaning of levels, in each directory whose numbers are not unsigned.
+    fn inverted(&self) -> Vec<usize> {
+        let in_directory = |entries: &Vec<usize>| {
+            let entry = |tag| entries.iter().find(|at| self.u16(**at) == tag);
+            let value = |tag| entry(tag).map(|at| at + if self.is_big { 12 } else { 8 });
+            let (meaning, kind) = (value(PHOTOMETRIC)?, value(SAMPLE_FORMAT)?);
+            let is_inverted = self.u16(meaning) == 0 && self.u16(kind) > 1;
+            is_inverted.then_some(meaning + usize::from(self.order == Endian::Big))
+        };
+        self.all().iter().filter_map(in_directory).collect()
     }
 
     /// Place of the first entry of the directory at `at`, and the number of entries. It is 0 where there is none.

@@ -3,6 +3,8 @@
 //! Readers are tested with files of other programs, with files built byte by byte, and with damaged files. Treatments
 //! are compared with closed forms.
 
+mod arrays;
+mod bombs;
 mod build;
 mod build_instruments;
 mod built;
