@@ -103,7 +103,8 @@ def _of_data_array(array: Any) -> Found:
     else:
         values, factor = _unmarked(array), _factor("heights", unit)
     if factor != 1.0:
-        values = values * factor
+        # Single precision is left before the digits of the unit come in.
+        values = np.asarray(values, np.float64) * factor
     axes = [_coordinate(array, axis) for axis in (1, 0)]
     x, y = axes
     if x is None or y is None:
