@@ -103,7 +103,8 @@ def _of_data_array(array: Any) -> Found:
     else:
         values, factor = _unmarked(array), _factor("heights", unit)
     if factor != 1.0:
-        values = values * factor
+        # Single precision is left before the digits of the unit come in.
+        values = np.asarray(values, np.float64) * factor
     axes = [_coordinate(array, axis) for axis in (1, 0)]
     x, y = axes
     if x is None or y is None:
@@ -233,7 +234,10 @@ def _counts(values: Any) -> bool:
 # Arrays of points, and profiles.
 
 #: Minimum number of rows of an array of two or three columns that is no map.
-_MANY = 9
+_MANY = 16
+
+#: Minimum number of points on a regular grid that are points, even if an array of so few rows may be a map.
+_ENOUGH = 9
 
 
 def of_points(points: Any) -> tuple[Floats, Sides]:
@@ -262,8 +266,12 @@ def of_points(points: Any) -> tuple[Floats, Sides]:
 def checked_shape(array: Floats) -> tuple[Floats, Sides | None]:
     """A map as it is, or that of an array of points. Refuses a profile by its name."""
     rows, columns = array.shape
-    if columns == 3 and rows >= _MANY:
-        return of_points(array)
+    if columns == 3 and rows >= _ENOUGH:
+        try:
+            return of_points(array)
+        except ValueError:
+            if rows >= _MANY:
+                raise
     if columns == 2 and rows >= _MANY:
         raise ValueError(
             f"heights: the {rows} x 2 array is a profile (x and height), not a map; "

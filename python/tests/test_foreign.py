@@ -234,12 +234,12 @@ def test_what_a_solve_tells_is_warned_of_once_and_an_error_with_strict(heights, 
     [({}, True), ({"method": "adaptive"}, True), ({"boundary": "free"}, False), ({"layer_thickness": 1e-3, "layer_poisson": 0.3}, False)],
 )
 def test_the_displacement_follows_the_heights_in_contact(heights, keys, mean_is_zero):
-    result = rc.solve(heights, cell=0.01, **{**CONTACT, **keys}, energy_tolerance=1e-5)
+    result = rc.solve(heights, cell=0.01, **{**CONTACT, **keys}, energy_tolerance=1e-3)
     displacement = result.displacement
     assert displacement.shape == heights.shape
     rest = displacement - heights - result.gap
     # The same constant everywhere: the gap is v - h plus a constant, and grows away from contact.
-    assert np.ptp(rest) < 1e-3 * np.ptp(heights)
+    assert np.ptp(rest) < 1e-4 * np.ptp(heights)
     in_contact = result.pressure > 0
     assert (displacement - heights)[~in_contact].min() > (displacement - heights)[in_contact].mean() - 1e-3 * np.ptp(heights)
     assert (abs(displacement.mean()) < 1e-9 * np.ptp(heights)) == mean_is_zero
