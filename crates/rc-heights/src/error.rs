@@ -67,7 +67,10 @@ pub enum FormatError {
         limit: u64,
     },
     /// An array has a list of points, and they cannot be a map.
-    #[error("an array of {rows} x {columns} numbers is taken as a list of points x y z, not as a map: {problem}")]
+    #[error(
+        "an array of {rows} x {columns} numbers is taken as a list of points x y z, not as a map: {problem}; --layout matrix says \
+         otherwise"
+    )]
     Points {
         /// Number of rows.
         rows: u64,

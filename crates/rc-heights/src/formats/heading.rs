@@ -11,6 +11,8 @@ use crate::{Format, FormatError, LengthUnit, Unit};
 
 /// Maximum number of lines before the first number. Those of Nanoscope have several hundred.
 const MOST_LINES: usize = 4000;
+/// Maximum number of comments whose contents count.
+const MOST_COMMENTS: usize = 2000;
 
 /// Characters around a line that are no part of its fields.
 const AROUND: [char; 9] = ['"', '\'', '\\', '#', '%', '!', '*', '/', '\t'];
@@ -51,9 +53,14 @@ impl Heading {
     /// [`FormatError::NoNumber`] when there are no numbers, or when the first apparent number is not valid.
     pub(super) fn of(text: &str) -> Result<Self, FormatError> {
         let mut heading = Self::default();
-        let (mut last, mut first_words, mut count) = (None, None, 0);
+        let (mut last, mut first_words, mut count, mut n_comments) = (None, None, 0, 0);
         for (line, row) in lines(text) {
             if let Some(comment) = comment(row) {
+                n_comments += 1;
+                // A file of comments alone ends quickly.
+                if n_comments > MOST_COMMENTS {
+                    continue;
+                }
                 heading.line(comment);
                 if Titles::name_coordinates(comment) {
                     last = Some((line, comment));

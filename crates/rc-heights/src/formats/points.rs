@@ -69,7 +69,7 @@ pub(super) fn map_of(points: Vec<[f64; 3]>, [rows, columns]: [usize; 2]) -> Resu
         |problem| FormatError::Points { rows: rows as u64, columns: columns as u64, problem: Box::new(problem) };
     let has_no_place = |[x, y, _]: &[f64; 3]| !(x.is_finite() && y.is_finite());
     if let Some(i) = points.iter().position(has_no_place) {
-        let message = format!("x or y of point {i} (from 0) is not finite; --layout matrix reads a map");
+        let message = format!("x or y of point {i} (from 0) is not finite");
         return Err(refused(FormatError::Irregular(message)));
     }
     on_grid(&points).map_err(refused)

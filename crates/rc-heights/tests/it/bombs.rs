@@ -36,8 +36,13 @@ fn zlib(bytes: &[u8]) -> Vec<u8> {
     encoder.finish().expect("memory")
 }
 
+/// The same limit for packed and plain files.
+fn within(max_bytes: u64) -> ReadParams {
+    ReadParams { max_bytes, max_plain_bytes: max_bytes, ..ReadParams::default() }
+}
+
 fn read_within(path: &Path, max_bytes: u64) -> Result<(usize, usize), ReadError> {
-    let map = read_with(path, &ReadParams { max_bytes, ..ReadParams::default() })?;
+    let map = read_with(path, &within(max_bytes))?;
     Ok((map.heights.grid().nx(), map.heights.grid().ny()))
 }
 
@@ -209,12 +214,12 @@ fn every_file_is_read_within_a_limit_that_is_a_multiple_of_its_size() {
     for (name, format, bytes) in build::all().into_iter().chain(build_instruments::all()) {
         let path = dir.path().join("map");
         std::fs::write(&path, &bytes).expect("a file");
-        let params = ReadParams { max_bytes: 64 * bytes.len() as u64 + 4096, ..ReadParams::default() };
+        let params = within(64 * bytes.len() as u64 + 4096);
         // The others have no mark, or are whole only with their name.
         if rc_heights::format_of(&path) == Ok(format) {
             assert!(read_with(&path, &params).is_ok(), "{name}");
         }
-        let params = ReadParams { max_bytes: 10, ..ReadParams::default() };
+        let params = within(10);
         assert!(read_with(&path, &params).is_err(), "{name}");
     }
 }
