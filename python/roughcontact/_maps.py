@@ -244,7 +244,8 @@ def read(
         Heights (m), with NaN where nothing was measured, and the size if the file has it.
     """
     keys = {"unit": unit, "height_scale": height_scale, "channel": channel, "layout": layout, "missing": missing, "mask": mask}
-    heights, sides = _core.read(os.fspath(path), plain(keys))
+    heights, sides, doubts = _core.read(os.fspath(path), plain(keys))
+    tell(doubts, strict)
     return of_parts(heights, pair(sides))
 
 

@@ -6,6 +6,7 @@ import io
 import json
 import os
 import pathlib
+import re
 import tempfile
 from collections.abc import Sequence
 from functools import cached_property
@@ -31,7 +32,12 @@ def _locked(field: Floats) -> Floats:
 def told(result: Result) -> list[str]:
     """The texts of what the solve warned of, as far as they are known without the summary, which takes longer."""
     warnings_of = getattr(result._source, "warnings", None)
-    return [] if warnings_of is None else [text for _, text in warnings_of()]
+    return [] if warnings_of is None else [_of_keywords(text) for _, text in warnings_of()]
+
+
+def _of_keywords(text: str) -> str:
+    """A message with keywords in place of the flags of the command line, but for those of ``rc surface``."""
+    return re.sub(r"(?<!rc surface )--([a-z-]+)", lambda flag: flag[1].replace("-", "_"), text)
 
 
 class Result:

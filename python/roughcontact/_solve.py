@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from roughcontact import _core
 from roughcontact._foreign import tell
 from roughcontact._keys import Boundary, Grid, LengthUnit, Mask, Method, Missing, Path, plain
-from roughcontact._maps import Heights, equal_spacings, map_parts
+from roughcontact._maps import Heights, map_parts
 from roughcontact._result import Result, told
 from roughcontact._run import Bar, Interrupted, NotConvergedError, NotConvergedWarning, ProgressOption, callback, checked
 from roughcontact._surface import Surface
@@ -160,6 +160,8 @@ def solve(
     """
     given = locals()
     keys = plain({name: value for name, value in given.items() if name not in _OPTIONS})
+    if strict:
+        keys["strict"] = True
     problem = surface_of(heights, keys)
     tell(problem.doubts, strict)
     result = solve_keys(problem, scene=scene, kernel=kernel, progress=progress)
@@ -255,9 +257,4 @@ def surface_of(heights: Any, keys: dict[str, Any]) -> Problem:
         if name in keys:
             raise ValueError(f"{name}: is for files; omit it, because the heights are an array (m)")
     array, sides, doubts = map_parts(heights)
-    cell = keys.get("cell")
-    if sides is None and "cell_y" not in keys and isinstance(cell, (int, float)) and 0.0 < cell < np.inf and array.size:
-        (_, side_y), assumed = equal_spacings(array.shape, float(cell))
-        if assumed:
-            keys, doubts = {**keys, "cell_y": side_y}, doubts + assumed
     return Problem(keys, array, sides, doubts)

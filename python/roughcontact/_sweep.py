@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from roughcontact import _core
 from roughcontact._foreign import tell
 from roughcontact._keys import Boundary, Grid, Mask, Method, Missing, Path, plain
-from roughcontact._maps import Heights, of_parts
+from roughcontact._maps import Heights, equal_spacings, of_parts
 from roughcontact._result import Result
 from roughcontact._rows import FieldsAt, Found, Job, Workers, by_workers, here
 from roughcontact._run import NotConvergedError, NotConvergedWarning, ProgressOption, RowBar, checked
@@ -141,6 +141,8 @@ def sweep(
     progress = _progress(progress, executor is not None)
     control, loads = _control(pressures, penetrations)
     places = _places(out, fields, resume, kernel)
+    if strict:
+        keys["strict"] = True
     problem = _anywhere(heights, keys, scene, strict)
     planned = _plan(problem, kernel, (control, loads, _seeds(seeds, heights)), places)
     kept = planned.kept()
@@ -242,6 +244,10 @@ def _anywhere(heights: Any, keys: dict[str, Any], scene: Path | None, strict: bo
         heights = os.path.abspath(os.fspath(heights))
     elif heights is not None and not isinstance(heights, Surface):
         keys, array, sides, doubts = surface_of(heights, keys)
+        cell = keys.get("cell")
+        if sides is None and "cell_y" not in keys and isinstance(cell, (int, float)) and cell > 0.0 and array.size:
+            # The rows take the same, but do not warn.
+            doubts += equal_spacings(array.shape, float(cell))[1]
         tell(doubts, strict, stacklevel=4)
         heights = of_parts(array, sides)
     return _Problem(heights, keys, scene)

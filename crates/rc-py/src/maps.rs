@@ -8,6 +8,7 @@ use pyo3::types::PyDict;
 use rc_cli::scene::keys::{Scene, SurfaceKeys};
 use rc_cli::scene::resolve;
 use rc_cli::scene::surface::{LoadedSurface, SurfaceSetup};
+use rc_cli::warnings::surface::assumed as assumed_of;
 use rc_cli::{inspect, scene::heights, surface as surfaces};
 use rc_core::Field;
 use rc_heights::{HeightMap, ReadParams};
@@ -20,6 +21,9 @@ use crate::scene::scene_of;
 
 /// An array (m), and the known sides of its rectangle along x and y (m).
 type MapParts<'py> = (Bound<'py, PyArray2<f64>>, Option<[f64; 2]>);
+
+/// The parts of a map, and what was assumed about it.
+type ReadMap<'py> = (Bound<'py, PyArray2<f64>>, Option<[f64; 2]>, Vec<String>);
 
 fn parts(py: Python<'_>, map: HeightMap) -> PyResult<MapParts<'_>> {
     let grid = map.heights.grid();
@@ -35,13 +39,17 @@ pub(crate) fn channels(py: Python<'_>, path: PathBuf) -> PyResult<Vec<(String, b
     Ok(channels.into_iter().map(|channel| (channel.name, channel.is_height)).collect())
 }
 
-/// Reads a height map of any format, in metres. Unmeasured points are `NaN`.
+/// Reads a height map of any format, in metres. Unmeasured points are `NaN`. The last part says what was assumed.
 #[pyfunction]
-pub(crate) fn read<'py>(py: Python<'py>, path: PathBuf, keys: &Bound<'py, PyDict>) -> PyResult<MapParts<'py>> {
+pub(crate) fn read<'py>(py: Python<'py>, path: PathBuf, keys: &Bound<'py, PyDict>) -> PyResult<ReadMap<'py>> {
     let surface = scene_of(keys, None)?.surface;
     let (params, scales) = (surface.read_params(), surface.scales());
     let map = on_threads(py, 0, move || heights::read(&path, &params, scales))?.map_err(raised)?;
-    parts(py, map)
+    // What the values look like is doubted where the map is used.
+    let assumed: Vec<String> = map.notes.iter().filter(|note| note.is_assumption()).map(ToString::to_string).collect();
+    let doubts = assumed_of(&assumed).map(|warning| warning.text).into_iter().collect();
+    let (heights, sides) = parts(py, map)?;
+    Ok((heights, sides, doubts))
 }
 
 /// A checked random surface, with its memory limit and number of threads.

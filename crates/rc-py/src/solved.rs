@@ -139,6 +139,14 @@ impl Solved {
         self.found.parts.wall.as_secs_f64()
     }
 
+    /// Codes and texts of the warnings of the summary, without the time that a summary takes.
+    fn warnings(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, String)>> {
+        self.compute(py, |found| {
+            let warnings = found.files(None).all_warnings();
+            warnings.into_iter().map(|warning| (warning.code.name(), warning.text)).collect()
+        })
+    }
+
     /// The summary as JSON.
     fn summary_json(&self, py: Python<'_>) -> PyResult<String> {
         self.compute(py, |found| found.summary().to_json())

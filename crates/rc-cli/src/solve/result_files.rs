@@ -85,9 +85,18 @@ impl ResultFiles<'_> {
         let summary = Summary::of(self.solution, self.contact.units, &context);
         // Only on a half-space are conduction and stiffness the same problem.
         let contact_conductance = summary.contact_conductance.filter(|_| self.contact.layer.is_none());
+        let warnings = self.all_warnings();
+        Summary { leakage, contact_conductance, warnings, ..summary }
+    }
+
+    /// The warnings from before the solve, and those that only the solution shows.
+    ///
+    /// Ranks call this together.
+    #[must_use]
+    pub fn all_warnings(&self) -> Vec<Warning> {
         let mut warnings = self.warnings.to_vec();
         warnings.extend(after(self.solution, self.contact, self.surface.heights.is_some()));
-        Summary { leakage, contact_conductance, warnings, ..summary }
+        warnings
     }
 
     /// Writes the result folder.

@@ -7,6 +7,6 @@
 pub(crate) mod contact;
 pub(crate) mod result;
 pub mod shown;
-pub(crate) mod surface;
+pub mod surface;
 
 mod single_spots;

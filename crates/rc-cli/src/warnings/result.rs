@@ -28,12 +28,21 @@ pub(crate) fn after(solution: &Solution<'_>, contact: &ContactSetup, is_map: boo
     let mean = if let Control::MeanPressure(_) = contact.control { None } else { Some(solution.info().mean_pressure) };
     found.extend(mean.and_then(|mean| mean_pressure(mean, contact)));
     if contact.hardness.is_infinite() {
-        found.extend(maximum(solution.observables().max_pressure, contact));
+        found.extend(maximum(maximum_pressure(solution), contact));
     }
     if is_map {
         found.extend(single(solution, contact.boundary));
     }
     found
+}
+
+/// The maximum pressure, without the time that all observables take.
+fn maximum_pressure(solution: &Solution<'_>) -> f64 {
+    let mine = match solution.elements() {
+        Some(elements) => elements.map(|element| element.pressure).fold(0.0, f64::max),
+        None => solution.pressure().max(),
+    };
+    solution.ranks().maximum(mine, 0.0)
 }
 
 fn maximum(pressure: f64, contact: &ContactSetup) -> Option<Warning> {

@@ -115,7 +115,8 @@ pub(crate) fn of_map(map: &HeightMap) -> Vec<Warning> {
 }
 
 /// One doubt about everything that was assumed; none if nothing was.
-pub(crate) fn assumed(assumptions: &[String]) -> Option<Warning> {
+#[must_use]
+pub fn assumed(assumptions: &[String]) -> Option<Warning> {
     let text = || format!("assumed: {}", assumptions.join("; "));
     (!assumptions.is_empty()).then(|| Warning::new(Assumed, text()))
 }
