@@ -151,13 +151,16 @@ impl Inspected {
             return Err(CliError::in_file(path, message));
         }
         let default = file::example().surface.cell;
+        let grid = map.heights.grid();
         let CellOfMap { cell, cell_y, mut assumed } = CellOfMap::of(path, &map, given)?;
         let (cell, cell_y) = match cell {
             Some(side) => (side, cell_y),
             None => {
                 let side = default.unwrap_or(1.0);
                 assumed.push(assumed_side(side));
-                (side, CellOfMap::of(path, &map, [Some(side), given[1]])?.cell_y)
+                let of_side = CellOfMap::default().of_points(Some(side), given[1], [grid.nx(), grid.ny()]);
+                assumed.extend(of_side.assumed);
+                (side, of_side.cell_y)
             }
         };
         let mut warnings = warnings::surface::of_map(&map);

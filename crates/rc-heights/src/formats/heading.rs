@@ -188,6 +188,11 @@ impl Heading {
         self.says_sides() || self.counts.iter().all(Option::is_some)
     }
 
+    /// Whether the lines contain both sides of the map or both numbers of points. A profile has a spacing too.
+    pub(super) fn says_whole_size(&self) -> bool {
+        self.sides.iter().all(Option::is_some) || self.counts.iter().all(Option::is_some)
+    }
+
     /// Whether the lines contain the size of the map.
     pub(super) fn says_sides(&self) -> bool {
         let is_known = |axis: usize| self.sides[axis].is_some() || self.spacing[axis].is_some();

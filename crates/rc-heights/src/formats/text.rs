@@ -56,7 +56,8 @@ pub(super) fn channels<'a>(bytes: &'a [u8], layout: Option<Layout>, missing: &[f
 fn map(text: &str, heading: &Heading, layout: Option<Layout>, marks: &Marks) -> Result<HeightMap, FormatError> {
     let mut table = Table::of(text, heading)?.of_heights(heading)?;
     let [nx, ny] = table.size;
-    if let (Some(what), None) = (profile(nx, ny, heading), layout) {
+    let filled = filled_columns(&table.values, nx);
+    if let (Some(what), None) = (profile(filled, ny, heading), layout) {
         return Err(FormatError::profile_in_text(what));
     }
     marks.erase(&mut table.values);
@@ -81,12 +82,20 @@ fn map(text: &str, heading: &Heading, layout: Option<Layout>, marks: &Marks) -> 
     Ok(map)
 }
 
+/// Number of columns up to the last one that has a number.
+///
+/// Programs end their rows with separators of columns that have nothing.
+fn filled_columns(values: &[f64], nx: usize) -> usize {
+    let is_filled = |ix: &usize| values[*ix..].iter().step_by(nx).any(|value| !value.is_nan());
+    (0..nx).rev().find(is_filled).map_or(0, |ix| ix + 1)
+}
+
 /// What a table of so few columns or rows is, if it is a profile.
 fn profile(nx: usize, ny: usize, heading: &Heading) -> Option<&'static str> {
     match (nx, ny) {
         (1, _) => Some("a text of one column"),
         // A map may be narrow if its size is known.
-        (2, _) if !heading.is_of_rows() => Some("a text of two columns, as position and height,"),
+        (2, _) if !heading.says_whole_size() => Some("a text of two columns, as position and height,"),
         (_, 1) => Some("a text of one row"),
         _ => None,
     }

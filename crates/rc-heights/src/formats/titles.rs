@@ -107,7 +107,8 @@ impl Titles {
     /// more, it begins with z or is called height, and the others are ignored.
     ///
     /// # Errors
-    /// [`FormatError::Field`] when titles belong to other columns.
+    /// [`FormatError::Field`] when titles belong to other columns, and [`FormatError::Profile`] when there are two beside
+    /// a counter.
     pub(super) fn columns(&self) -> Result<Option<Columns>, FormatError> {
         let all = self.names.len();
         if all < 3 {
@@ -122,6 +123,9 @@ impl Titles {
         match (x, y, z) {
             (Some(x), Some(y), Some(z)) if all > 3 => return found([x, y, z], has_counter),
             _ if all > 3 => return Ok(None),
+            (Some(1), Some(2), None) if has_counter => {
+                return Err(FormatError::profile_in_text("a text of two columns beside a counter"));
+            }
             _ if has_counter => {}
             (Some(x), Some(y), _) => return found([x, y, 3 - x - y], false),
             _ if in_place => return found([0, 1, 2], false),

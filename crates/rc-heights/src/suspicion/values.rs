@@ -6,7 +6,7 @@ use rc_core::Field;
 ///
 /// They are those of geographic grids, of signed and unsigned integers, of Surfer, of NetCDF, of MetroPro, and of 32-bit
 /// and 64-bit floats.
-const MARKS: [f64; 30] = [
+const MARKS: [f64; 25] = [
     999.0,
     9999.0,
     99_999.0,
@@ -28,16 +28,14 @@ const MARKS: [f64; 30] = [
     2_147_483_647.0,
     2_147_483_648.0,
     4_294_967_295.0,
-    1e10,
-    1e20,
-    1e30,
     9.969_209_968_386_869e36,
-    1e37,
-    1e38,
     1.701_41e38,
     3.402_823_466_385_288_6e38,
     1.797_693_134_862_315_7e308,
 ];
+
+/// Powers of ten that programs write where nothing was measured.
+const ROUND_MARKS: [f64; 5] = [1e10, 1e20, 1e30, 1e37, 1e38];
 
 /// Factors that readers may have applied: units of length.
 const FACTORS: [f64; 7] = [1.0, 1e-3, 1e-6, 1e-9, 1e-10, 1e-2, 1e-12];
@@ -108,7 +106,8 @@ fn farthest(values: &[f64]) -> Option<Mark> {
             last = last.max(*value);
         }
     }
-    let is_far = |gap: f64, range: f64| gap > FAR * range && gap > 0.0 && gap.is_finite();
+    // Any other height is far from a plate. Only one of hundreds of metres is then a mark.
+    let is_far = |gap: f64, range: f64| gap > if range > 0.0 { FAR * range } else { MARKS[0] - 1.0 } && gap.is_finite();
     if is_far(second - low, high - second) {
         Some(Mark { value: low, count: counts[0] })
     } else if is_far(high - last, last - low) {
@@ -121,7 +120,8 @@ fn farthest(values: &[f64]) -> Option<Mark> {
 /// Whether a value is a mark, possibly times a factor of units.
 fn is_mark(value: f64) -> bool {
     let is = |mark: f64| FACTORS.iter().any(|factor| (value.abs() / (mark * factor) - 1.0).abs() < SAME);
-    MARKS.iter().any(|mark| is(*mark))
+    // Heights of 1, 10 or 1e-6 are not rare, but none is 1000 km.
+    MARKS.iter().any(|mark| is(*mark)) || ROUND_MARKS.iter().any(|mark| is(*mark)) && value.abs() > 1e6
 }
 
 /// Whether the first row or column counts 0, 1, 2, … or 1, 2, 3, …, and the others do not.
