@@ -11,7 +11,7 @@ heights = 1e-6 * (np.sin(0.3 * x) + np.cos(0.2 * y) + 0.2 * rng.standard_normal(
 heights[10:14, 20:25] = np.nan
 
 measured = rc.HeightMap(heights, sides=(1.28e-3, 1.0e-3))
-treated = rc.prepare(measured, crop="64", fill="laplace", level="plane", periodic="mirror", low_pass=50e-6)
+treated = rc.prepare(measured, crop="64", level="plane", fill="laplace", periodic="mirror", low_pass=50e-6)
 print(measured, treated, sep="\n")
 
 result = rc.solve(treated, e_star=200e9, pressure=50e6)

@@ -210,6 +210,7 @@ def read(
     path: Path,
     *,
     unit: LengthUnit | None = None,
+    height_unit: LengthUnit | None = None,
     height_scale: float | None = None,
     channel: str | None = None,
     layout: Literal["matrix", "xyz"] | None = None,
@@ -225,6 +226,8 @@ def read(
         Text, ``.npy``, ``.h5``, ``.nc``, ``.mat``, 16-bit ``.png`` or ``.tif``, or a file from an instrument or from Gwyddion.
     unit : {"m", "cm", "mm", "um", "nm", "angstrom", "pm"}, optional
         Unit of the lengths of a file that names none. Default: m.
+    height_unit : {"m", "cm", "mm", "um", "nm", "angstrom", "pm"}, optional
+        Unit of the heights, where it differs from ``unit``.
     height_scale : float, optional
         Height (m) of the value 1 in a file that names no unit. In an image, 1 is one level of grey.
     channel : str, optional
@@ -243,7 +246,15 @@ def read(
     HeightMap
         Heights (m), with NaN where nothing was measured, and the size if the file has it.
     """
-    keys = {"unit": unit, "height_scale": height_scale, "channel": channel, "layout": layout, "missing": missing, "mask": mask}
+    keys = {
+        "unit": unit,
+        "height_unit": height_unit,
+        "height_scale": height_scale,
+        "channel": channel,
+        "layout": layout,
+        "missing": missing,
+        "mask": mask,
+    }
     heights, sides, doubts = _core.read(os.fspath(path), plain(keys))
     tell(doubts, strict)
     return of_parts(heights, pair(sides))
@@ -276,7 +287,7 @@ def prepare(
 ) -> HeightMap:
     """Treat a measured map, as ``rc surface`` does, in the order of the parameters.
 
-    Most measured maps need ``crop="square", fill="laplace", level="plane", periodic="mirror"``.
+    Most measured maps need ``crop="square", level="plane", fill="laplace", periodic="mirror"``.
 
     Parameters
     ----------

@@ -33,6 +33,7 @@ def solve(
     cell_y: float | None = None,
     spectrum: Path | None = None,
     unit: LengthUnit | None = None,
+    height_unit: LengthUnit | None = None,
     height_scale: float | None = None,
     channel: str | None = None,
     layout: Literal["matrix", "xyz"] | None = None,
@@ -87,7 +88,7 @@ def solve(
     cell, cell_y : float, optional
         Sides of the periodic cell along x and y (m). An array needs ``cell``. Without ``cell_y``, spacings of a map are equal
         along x and y, and the cell of other surfaces is a square.
-    unit, height_scale, channel, layout, missing, mask : optional
+    unit, height_unit, height_scale, channel, layout, missing, mask : optional
         How a file is read, as for :func:`read`.
     spectrum, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, low_cut, amplitudes : optional
         A surface of waves instead of ``heights``, as for :class:`Surface`.
@@ -253,7 +254,7 @@ def surface_of(heights: Any, keys: dict[str, Any]) -> Problem:
         return Problem({**heights.keys(), **keys})
     if isinstance(heights, (str, os.PathLike)):
         return Problem({**keys, "heights": os.fspath(heights)})
-    for name in ("unit", "height_scale", "channel", "layout", "missing", "mask", "spectrum"):
+    for name in ("unit", "height_unit", "height_scale", "channel", "layout", "missing", "mask", "spectrum"):
         if name in keys:
             raise ValueError(f"{name}: is for files; omit it, because the heights are an array (m)")
     array, sides, doubts = map_parts(heights)

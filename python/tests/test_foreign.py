@@ -189,11 +189,13 @@ def test_spacings_are_equal_without_a_size_for_y_and_this_is_said(heights):
         lambda **keys: rc.inspect(part, **keys)["rms_slope"],
         lambda **keys: rc.sweep(part, pressures=[1e6], e_star=1e9, method="uniform", **keys)["area_fraction"].tolist(),
     ):
-        with pytest.warns(rc.InputWarning, match="^assumed: equal spacings .* 0.01 m x 0.0075 m; cell_y says otherwise") as told:
+        with pytest.warns(rc.InputWarning, match="^assumed: equal spacings .*cell_y says otherwise") as told:
             assumed = call(cell=0.01)
+        # That the part does not repeat itself is another doubt.
+        told = [warning for warning in told if str(warning.message).startswith("assumed")]
         assert len(told) == 1 and told[0].filename == __file__, [str(warning.message) for warning in told]
         with warnings.catch_warnings():
-            warnings.simplefilter("error", rc.InputWarning)
+            warnings.filterwarnings("error", "assumed", rc.InputWarning)
             assert call(cell=0.01, cell_y=0.0075) == assumed
     for call in (rc.solve, rc.sweep):
         load = {"pressure": 1e6} if call is rc.solve else {"pressures": [1e6]}

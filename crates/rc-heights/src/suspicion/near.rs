@@ -53,6 +53,10 @@ impl<'a> Near<'a> {
         let mut height = smaller(raw, raw + step * (1.5 / 3.5));
         if !complete {
             height = smaller(height, self.level([0, 0]) - self.extrapolated(&group)?);
+            // A membrane that fills a point at the border is wrong by a part of the step to the next point.
+            if height.abs() < self.slope[0].abs().max(self.slope[1].abs()) {
+                return None;
+            }
         }
         let is_far = height.abs() > SPIKE * deviation && height.abs() > STEEP * step.abs();
         let mut is_clear = || {
