@@ -17,12 +17,12 @@ mod hertz;
 mod interchange;
 mod layer;
 mod leakage;
-mod messages;
 mod pits;
 mod ranks;
 mod reference;
 mod rough;
 mod stress_distribution;
+mod suspicions;
 mod swap;
 mod westergaard;
 

@@ -74,9 +74,9 @@ impl std::fmt::Debug for Snapshot<'_> {
 
 /// Receives [`Event`]s.
 ///
-/// The solver calls the methods between iterations and within them, from the solving thread. They should return quickly. If several
-/// ranks (processes or threads) share a solve, each rank calls its observer. All ranks stop if the observer of any rank
-/// wants to stop.
+/// The solver calls the methods between iterations and within them, from the solving thread. They should return
+/// quickly. If several ranks (processes or threads) share a solve, each rank calls its observer. All ranks stop if the
+/// observer of any rank wants to stop.
 pub trait Observer: Sync {
     /// Receives an event.
     fn notify(&self, event: &Event);

@@ -48,8 +48,8 @@ impl AreaParameters {
 
     /// The parameters of `heights` on a rectangle of `sides` along x and y.
     ///
-    /// Heights and sides have the same unit. Points that are `NaN` are missing: the parameters are those of the measured
-    /// points and of pairs and meshes of them.
+    /// Heights and sides have the same unit. Points that are `NaN` are missing: the parameters are those of the
+    /// measured points and of pairs and meshes of them.
     #[must_use]
     pub fn of(heights: &Field, sides: [f64; 2]) -> Self {
         let grid = heights.grid();

@@ -26,7 +26,8 @@ pub struct MapStatistics {
 }
 
 impl MapStatistics {
-    /// Statistics of `heights`, which are in units of the side of the cell along x, and `NaN` where nothing was measured.
+    /// Statistics of `heights`, which are in units of the side of the cell along x, and `NaN` where nothing was
+    /// measured.
     ///
     /// `side` is the length of that side.
     #[must_use]

@@ -234,8 +234,8 @@ impl Summary {
 
     /// The summary as the cells of a row.
     ///
-    /// The cell `warnings` has the codes of the warnings. The cells of a flow are `permeance_x`, `permeance_y`, their errors (all in m³), and `percolates` (along x and
-    /// along y).
+    /// The cell `warnings` has the codes of the warnings. The cells of a flow are `permeance_x`, `permeance_y`, their
+    /// errors (all in m³), and `percolates` (along x and along y).
     ///
     /// # Panics
     /// Never, because a record of numbers and text is an object.

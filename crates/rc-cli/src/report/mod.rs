@@ -1,8 +1,8 @@
 //! `rc report`: one page of a result, a surface, a sweep or a mean, for a browser.
 //!
 //! The page needs no network. It is a frame ([`document`]), a script, and data. [`contact`] makes the data of a solve,
-//! [`surface`] those of a surface, [`curves`] those of a sweep, and [`mean`] those of a mean over realisations. All texts are made here, and the script
-//! shows them as text. The script draws maps and charts from numbers.
+//! [`surface`] those of a surface, [`curves`] those of a sweep, and [`mean`] those of a mean over realisations. All
+//! texts are made here, and the script shows them as text. The script draws maps and charts from numbers.
 
 pub(crate) mod args;
 

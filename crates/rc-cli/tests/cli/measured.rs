@@ -13,8 +13,8 @@ fn sample(name: &str) -> String {
 fn a_measured_map_becomes_a_surface_that_is_solved() {
     let place = Place::new();
     let scan = sample("surfalize-missing.sdf");
-    // The map has 12 x 8 points on 24 µm x 24 µm. It is a square, has a hole, and is not periodic. The form is fitted to
-    // the measured points before the hole is filled, whatever the order of the flags.
+    // The map has 12 x 8 points on 24 µm x 24 µm. It is a square, has a hole, and is not periodic. The form is fitted
+    // to the measured points before the hole is filled, whatever the order of the flags.
     assert_refused(
         &place.run(&[&["solve", "--heights", &scan, "--pressure", "1e5"], &MATERIAL[..]].concat()),
         "--fill laplace",

@@ -44,8 +44,8 @@ pub(super) type Meshes = ([Vec<f64>; 2], bool);
 
 /// The coordinates in matrices of coordinates (`meshgrid`) with `columns` columns, row by row.
 ///
-/// The last index is x (`indexing='xy'`), or the first is (`indexing='ij'`). `None` unless x and y each change along one
-/// index only.
+/// The last index is x (`indexing='xy'`), or the first is (`indexing='ij'`). `None` unless x and y each change along
+/// one index only.
 pub(super) fn of_meshes(x: &[f64], y: &[f64], columns: usize) -> Option<Meshes> {
     let same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs());
     let along_rows = |values: &[f64]| {

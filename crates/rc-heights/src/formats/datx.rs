@@ -1,8 +1,8 @@
 //! Scales of Zygo's `.datx` files, which are HDF5.
 //!
-//! An array has attributes `X Converter`, `Y Converter` and `Z Converter`: records of a category, a unit and parameters.
-//! Those of x and y are 0 and the distance of points (m). Those of z are 0, the wavelength (m), the heights of a fringe
-//! in wavelengths, and the factor of obliquity. Readers of prysm and of SurfaceTopography take them so.
+//! An array has attributes `X Converter`, `Y Converter` and `Z Converter`: records of a category, a unit and
+//! parameters. Those of x and y are 0 and the distance of points (m). Those of z are 0, the wavelength (m), the heights
+//! of a fringe in wavelengths, and the factor of obliquity. Readers of prysm and of SurfaceTopography take them so.
 
 use netcdf_reader::{NcAttrValue, NcAttribute, NcValue};
 

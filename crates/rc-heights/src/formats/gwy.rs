@@ -143,7 +143,8 @@ impl<'a> DataField<'a> {
 
     /// The sides and their unit.
     ///
-    /// By the format, a missing side is 1, so the size is not known then. Sides of 1 without a unit are that default too.
+    /// By the format, a missing side is 1, so the size is not known then. Sides of 1 without a unit are that default
+    /// too.
     fn known_sides(&self) -> Result<(Option<[f64; 2]>, Unit), FormatError> {
         let unknown = Ok((None, Unit::Unnamed));
         let [Some(x), Some(y)] = self.sides else { return unknown };

@@ -29,7 +29,8 @@ pub(crate) fn check(needed: u64, max_bytes: u64) -> Result<(), FormatError> {
     if needed > max_bytes { Err(FormatError::TooLarge { needed, limit: max_bytes }) } else { Ok(()) }
 }
 
-/// Refuses a map whose heights, with `stored` bytes a point beside them and `others` in all, need more than `max_bytes`.
+/// Refuses a map whose heights, with `stored` bytes a point beside them and `others` in all, need more than
+/// `max_bytes`.
 pub(super) fn check_map(grid: Grid, stored: u64, others: u64, max_bytes: u64) -> Result<(), FormatError> {
     check((grid.len() as u64).saturating_mul(HEIGHT + stored).saturating_add(others), max_bytes)
 }

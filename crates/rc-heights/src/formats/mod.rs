@@ -113,9 +113,9 @@ pub fn may_have_sides(path: &Path, params: &ReadParams) -> Result<bool, ReadErro
 
 /// Reads the height map at `path`, in the units of the file ([`HeightMap::in_metres`]).
 ///
-/// Row `iy` of the file is row `iy` of the field, unless the format has its top first ([`Format::first_row_is_top`]): then
-/// rows are reversed, so that y points up, and a note says so. A missing point is `NaN`. If the file has several channels,
-/// the first with heights is read.
+/// Row `iy` of the file is row `iy` of the field, unless the format has its top first ([`Format::first_row_is_top`]):
+/// then rows are reversed, so that y points up, and a note says so. A missing point is `NaN`. If the file has several
+/// channels, the first with heights is read.
 ///
 /// # Errors
 /// [`ReadError`] when the file cannot be read, has an unknown format, is damaged, has no measured point, or has an

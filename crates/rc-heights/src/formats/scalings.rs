@@ -1,7 +1,8 @@
 //! Sizes, units and marks of missing points that stand beside an array, by their usual names.
 //!
 //! They are attributes of the array, or attributes and short arrays of its group. Names are compared without case and
-//! separators, with the letter of an axis and a unit before or behind: `pixel_size_x`, `dx`, `ScanSize`, `spacing (um)`.
+//! separators, with the letter of an axis and a unit before or behind: `pixel_size_x`, `dx`, `ScanSize`, `spacing
+//! (um)`.
 
 use rc_core::Grid;
 

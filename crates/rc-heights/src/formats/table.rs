@@ -186,8 +186,8 @@ impl Table {
         Ok(())
     }
 
-    /// Numbers of columns, and perhaps of rows, as pandas and spreadsheets write them, or coordinates below and beside an
-    /// empty corner.
+    /// Numbers of columns, and perhaps of rows, as pandas and spreadsheets write them, or coordinates below and beside
+    /// an empty corner.
     fn without_numbers_of_pandas(&mut self) {
         let [top, left] = [self.border(0), self.border(1)];
         let has_fractions = |table: &Self| {

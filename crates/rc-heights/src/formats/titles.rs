@@ -107,8 +107,8 @@ impl Titles {
     /// more, it begins with z or is called height, and the others are ignored.
     ///
     /// # Errors
-    /// [`FormatError::Field`] when titles belong to other columns, and [`FormatError::Profile`] when there are two beside
-    /// a counter.
+    /// [`FormatError::Field`] when titles belong to other columns, and [`FormatError::Profile`] when there are two
+    /// beside a counter.
     pub(super) fn columns(&self) -> Result<Option<Columns>, FormatError> {
         let all = self.names.len();
         if all < 3 {

@@ -89,7 +89,8 @@ impl<'a> Map<'a> {
 
     /// The robust standard deviation of all points from the median of their neighbours.
     ///
-    /// It is larger for a map that is much rougher in some parts than in others, as far as that is no effect of spikes. If half of the points do not deviate, as on plateaus, it is that of those which do. `None` if none does.
+    /// It is larger for a map that is much rougher in some parts than in others, as far as that is no effect of spikes.
+    /// If half of the points do not deviate, as on plateaus, it is that of those which do. `None` if none does.
     pub(super) fn usual_deviation(&self) -> Option<f64> {
         let mut deviations = self.sampled(|x, y| self.deviation(x, y));
         let deviation = robust_deviation(&mut deviations, 0.0)?;

@@ -4,8 +4,8 @@ use rc_core::Field;
 
 /// Values that programs write where nothing was measured, without their signs.
 ///
-/// They are those of geographic grids, of signed and unsigned integers, of Surfer, of NetCDF, of MetroPro, and of 32-bit
-/// and 64-bit floats.
+/// They are those of geographic grids, of signed and unsigned integers, of Surfer, of NetCDF, of MetroPro, and of
+/// 32-bit and 64-bit floats.
 const MARKS: [f64; 25] = [
     999.0,
     9999.0,

@@ -251,8 +251,9 @@ impl<'a> Solution<'a> {
     /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ.
     ///
     /// It is computed to 1e-3 relative, or less accurately with an operator of the caller
-    /// ([`crate::solve_with_operator`]), and to a few percent if the solve did not converge. The stiffness is infinite in full contact with the half-space. Plastic
-    /// elements keep their pressure and do not contribute. The first call takes a few applications of L.
+    /// ([`crate::solve_with_operator`]), and to a few percent if the solve did not converge. The stiffness is infinite
+    /// in full contact with the half-space. Plastic elements keep their pressure and do not contribute. The first call
+    /// takes a few applications of L.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         *self.stiffness.get_or_init(|| match &self.pressures {

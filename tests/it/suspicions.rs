@@ -4,8 +4,6 @@ use rc_core::{DVec2, Field, Grid, HeightField as _};
 use rc_fractal::{Amplitudes, Normalisation, SpectrumParams, Surface, Truncation};
 use rc_heights::suspicion::{Counter, Mark, Suspicions, counter, is_thin, marks, spikes};
 
-use crate::files::{folder, map};
-
 /// Numbers in [0, 1), always the same for a seed (SplitMix64).
 struct Numbers(u64);
 
@@ -104,7 +102,8 @@ fn plant(field: &mut Field, many: usize, size: usize, height: f64, numbers: &mut
 #[test]
 fn planted_spikes_are_found() {
     let mut numbers = Numbers(11);
-    // Elements of the shortest wave, Hurst exponent, spikes, their size and height, the part of their points to be found.
+    // Elements of the shortest wave, Hurst exponent, spikes, their size and height, the part of their points to be
+    // found.
     let cases = [
         (1, 1, 15.0, 0.95),
         (8, 1, 10.0, 0.85),
@@ -315,17 +314,5 @@ fn two_to_four_columns_or_rows_are_few() {
     for (nx, ny, thin) in [(3, 600, true), (600, 4, true), (2, 2, true), (5, 5, false), (1, 50, false), (12, 8, false)]
     {
         assert_eq!(is_thin(Grid::new(nx, ny).expect("a grid")), thin, "{nx} x {ny}");
-    }
-}
-
-#[test]
-fn the_files_of_other_programs_are_not_doubted() {
-    for entry in std::fs::read_dir(folder()).expect("a folder") {
-        let name = entry.expect("a file").file_name().into_string().expect("a name");
-        let is_other = ["README.md", "h5py-huge.h5", "h5py-cycle.h5", "tifffile-park.tif"].contains(&name.as_str());
-        // Waves are read elsewhere.
-        if !is_other && !name.starts_with("h5py-waves") {
-            assert_eq!(Suspicions::of(&map(&name).heights), Suspicions::default(), "{name}");
-        }
     }
 }

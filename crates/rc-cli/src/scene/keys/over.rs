@@ -1,0 +1,94 @@
+//! Keys laid over other keys: flags over a scene file, and both over the example.
+
+use super::{ContactKeys, RunKeys, Scene, SurfaceKeys};
+
+/// Sets each key that `upper` does not have to the value in `lower`.
+macro_rules! or_lower {
+    ($upper:expr, $lower:expr, { $($key:ident),+ $(,)? }) => { $( if $upper.$key.is_none() { $upper.$key = $lower.$key; } )+ };
+}
+
+impl SurfaceKeys {
+    /// These keys laid over `lower`.
+    ///
+    /// A key given here removes its alternatives in `lower`. A height map, a file of waves and the parameters of a
+    /// random surface are alternatives. So are `rms`, `rms_slope` and `c0`. A `cell` removes the other side.
+    #[must_use]
+    pub fn over(mut self, mut lower: Self) -> Self {
+        if self.heights.is_some() {
+            lower = Self { cell: lower.cell, cell_y: lower.cell_y, ..Self::default() };
+        } else if self.spectrum.is_some() {
+            lower = Self { cell: lower.cell, ..Self::default() };
+        } else if self.generates() {
+            lower = Self { heights: None, spectrum: None, unit: None, height_scale: None, cell_y: None, ..lower };
+            (lower.channel, lower.layout, lower.height_unit) = (None, None, None);
+            (lower.missing, lower.mask) = (None, None);
+        }
+        if self.cell.is_some() {
+            lower.cell_y = None;
+        }
+        if self.rms.is_some() || self.rms_slope.is_some() || self.c0.is_some() {
+            (lower.rms, lower.rms_slope, lower.c0) = (None, None, None);
+        }
+        or_lower!(self, lower, {
+            cell, cell_y, heights, spectrum, unit, height_unit, height_scale, missing, mask, channel, layout, waves, hurst, rms, rms_slope,
+            c0, seed, truncation, roll_off, low_cut, amplitudes, grid, read_limit
+        });
+        self
+    }
+}
+
+impl ContactKeys {
+    /// These keys laid over `lower`.
+    ///
+    /// A key given here removes its alternatives in `lower`. These are `pressure` and `penetration`, `tolerance` and
+    /// `energy_tolerance`, and `e_star` and the pair of `young` and `poisson`.
+    #[must_use]
+    pub fn over(mut self, mut lower: Self) -> Self {
+        if self.pressure.is_some() || self.penetration.is_some() {
+            (lower.pressure, lower.penetration) = (None, None);
+        }
+        if self.e_star.is_some() {
+            (lower.young, lower.poisson) = (None, None);
+        } else if self.young.is_some() || self.poisson.is_some() {
+            lower.e_star = None;
+        }
+        if self.tolerance.is_some() || self.energy_tolerance.is_some() {
+            (lower.tolerance, lower.energy_tolerance) = (None, None);
+        }
+        or_lower!(self, lower, {
+            young, poisson, e_star, pressure, penetration, hardness, kernel, boundary, layer_thickness, layer_poisson, method, border_level,
+            energy_tolerance, tolerance, area_error, output_grid
+        });
+        self.leakage |= lower.leakage;
+        self
+    }
+}
+
+impl RunKeys {
+    /// These keys laid over `lower`. `quiet`, `json` and `strict` are set if either sets them.
+    #[must_use]
+    pub fn over(mut self, lower: Self) -> Self {
+        or_lower!(self, lower, { out, threads, memory_limit, time_limit });
+        self.quiet |= lower.quiet;
+        self.json |= lower.json;
+        self.strict |= lower.strict;
+        self
+    }
+}
+
+impl Scene {
+    /// This scene laid over `lower`, group by group.
+    #[must_use]
+    pub fn over(self, mut lower: Self) -> Self {
+        if self.contact.area_error.is_some() {
+            lower.surface.grid = None;
+        } else if self.surface.grid.is_some() {
+            lower.contact.area_error = None;
+        }
+        Self {
+            surface: self.surface.over(lower.surface),
+            contact: self.contact.over(lower.contact),
+            run: self.run.over(lower.run),
+        }
+    }
+}
