@@ -17,6 +17,10 @@ pub struct HeightMap {
     pub sides: Option<[f64; 2]>,
     /// Unit of the sides.
     pub side_unit: Unit,
+    /// Height of the number 1 in the file, in the unit of the heights.
+    ///
+    /// It is 1 for numbers as they are in the file, and a length in metres for a format or a file that names a unit.
+    pub number: f64,
     /// What a reader did beyond copying numbers, and what it had to assume.
     pub notes: Vec<ReadNote>,
 }
@@ -25,13 +29,19 @@ impl HeightMap {
     /// A map without notes.
     #[must_use]
     pub fn new(heights: Field, height_unit: Unit, sides: Option<[f64; 2]>, side_unit: Unit) -> Self {
-        Self { heights, height_unit, sides, side_unit, notes: Vec::new() }
+        Self { heights, height_unit, sides, side_unit, number: 1.0, notes: Vec::new() }
     }
 
     /// A map without sides, from an array. Its heights are in metres unless the user gives a unit.
     #[must_use]
     pub fn bare(heights: Field) -> Self {
         Self::new(heights, Unit::Array, None, Unit::Unnamed)
+    }
+
+    /// The same map, whose heights are numbers of the file times `number`.
+    #[must_use]
+    pub fn of_numbers(self, number: f64) -> Self {
+        Self { number, ..self }
     }
 
     /// The same map with one more note.

@@ -8,7 +8,9 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum ReadNote {
     /// No unit of heights is named, so they were taken as metres.
-    #[error("the file names no unit of heights, so they are taken as metres; --unit or --height-scale says otherwise")]
+    #[error(
+        "the file names no unit of heights, so they are taken as metres; --unit, --height-unit or --height-scale says otherwise"
+    )]
     HeightsAssumedMetres,
     /// No unit of the sides is named, so they were taken as metres.
     #[error("the file names no unit of its sides, so they are taken as metres; --unit says otherwise")]
@@ -36,6 +38,9 @@ pub enum ReadNote {
         /// Largest shift, in spacings.
         largest: f64,
     },
+    /// No point has a mark of missing points that the user gives.
+    #[error("no point has a value that --missing names; give it as the number that the file has")]
+    NoMark,
     /// The first column or row has line numbers, not heights, and was omitted.
     #[error("the first {what} counts lines, so it is omitted")]
     Counter {

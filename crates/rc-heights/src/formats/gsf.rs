@@ -44,7 +44,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     // One to four zero bytes pad the header to a multiple of four.
     let mut values = Number::F32.values_alone(bytes.get(end + 4 - end % 4..).unwrap_or_default(), grid)?;
     crate::map::scale(&mut values, height_factor);
-    Ok(HeightMap::new(field(grid, values), height_unit, sides, side_unit))
+    Ok(HeightMap::new(field(grid, values), height_unit, sides, side_unit).of_numbers(height_factor))
 }
 
 /// Writes a field as a simple field of 32-bit floats, with heights and `sides` in m.

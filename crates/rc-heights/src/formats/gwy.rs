@@ -138,7 +138,7 @@ impl<'a> DataField<'a> {
         let mut values = Number::F64.values_alone(self.values, grid)?;
         crate::map::scale(&mut values, self.height.1);
         let (sides, side_unit) = self.known_sides()?;
-        Ok(HeightMap::new(field(grid, values), self.height.0, sides, side_unit))
+        Ok(HeightMap::new(field(grid, values), self.height.0, sides, side_unit).of_numbers(self.height.1))
     }
 
     /// The sides and their unit.

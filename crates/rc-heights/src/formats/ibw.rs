@@ -141,7 +141,7 @@ impl<'a> Wave<'a> {
         #[expect(clippy::float_cmp, reason = "the step of a wave that was never scaled is exactly 1")]
         let is_scaled = side_unit == Unit::Metre || self.steps != [1.0, 1.0];
         let sides = is_scaled.then(|| [x * grid.nx() as f64, y * grid.ny() as f64]);
-        Ok(HeightMap::new(field(grid, values), height_unit, sides, side_unit))
+        Ok(HeightMap::new(field(grid, values), height_unit, sides, side_unit).of_numbers(factor))
     }
 }
 

@@ -47,9 +47,12 @@ pub(super) enum Needed {
 impl Needed {
     pub(super) fn of(format: Format) -> Self {
         Self::Numbers(match format {
-            Format::Csv | Format::EsriGrid => return Self::Text(Text::new(HEIGHT)),
+            Format::Csv => return Self::Text(Text::new(HEIGHT)),
+            // Lines may end anywhere.
+            Format::EsriGrid => return Self::Text(Text { wraps: true, ..Text::new(HEIGHT) }),
             // A point has three numbers: its list, an axis to sort, and its place on the grid.
-            Format::Xyz | Format::Zygo => return Self::Text(Text::new(2 * HEIGHT)),
+            Format::Xyz => return Self::Text(Text::new(2 * HEIGHT)),
+            Format::Zygo => return Self::Text(Text { wraps: true, ..Text::new(2 * HEIGHT) }),
             // Their readers check what they unpack.
             Format::Hdf5
             | Format::Mat
@@ -96,11 +99,24 @@ pub(super) struct Text {
     in_word: usize,
     line: usize,
     after_separator: bool,
+    /// Whether a line may have any number of values.
+    wraps: bool,
 }
 
 impl Text {
     fn new(number: u64) -> Self {
-        Self { number, bytes: 0, high: 0, zeros: 0, values: 0, in_line: 0, in_word: 0, line: 1, after_separator: true }
+        Self {
+            number,
+            bytes: 0,
+            high: 0,
+            zeros: 0,
+            values: 0,
+            in_line: 0,
+            in_word: 0,
+            line: 1,
+            after_separator: true,
+            wraps: false,
+        }
     }
 
     /// Counts the values in the next bytes.
@@ -129,7 +145,7 @@ impl Text {
                     self.in_line += usize::from(self.after_separator);
                     self.in_word = if self.after_separator { 1 } else { self.in_word + 1 };
                     self.after_separator = false;
-                    if self.in_line > Grid::MAX_SIDE || self.in_word > LONGEST_WORD {
+                    if self.in_line > Grid::MAX_SIDE && !self.wraps || self.in_word > LONGEST_WORD {
                         return Err(self.endless());
                     }
                 }

@@ -98,15 +98,21 @@ pub(super) struct Marks(Vec<f64>);
 impl Marks {
     /// The marks of the user and those that the file declares.
     pub(super) fn new(of_user: &[f64], of_file: &[f64]) -> Self {
-        Self([of_user, of_file].concat())
+        Self([of_user, of_file].concat().into_iter().filter(|mark| mark.is_finite()).collect())
     }
 
     /// Makes the values missing that have a mark. They must be the numbers of the file, before any unit.
     pub(super) fn erase<'a>(&self, values: impl IntoIterator<Item = &'a mut f64>) {
+        self.erase_scaled(values, 1.0);
+    }
+
+    /// The same for values that are the numbers of the file times `number`.
+    pub(super) fn erase_scaled<'a>(&self, values: impl IntoIterator<Item = &'a mut f64>, number: f64) {
         if self.0.is_empty() {
             return;
         }
-        let is_marked = |value: f64| self.0.iter().any(|mark| (value - mark).abs() <= SAME * mark.abs());
+        let is = |value: f64, mark: f64| (value - mark * number).abs() <= SAME * (mark * number).abs();
+        let is_marked = |value: f64| self.0.iter().any(|mark| is(value, *mark));
         values.into_iter().filter(|value| is_marked(**value)).for_each(|value| *value = f64::NAN);
     }
 }

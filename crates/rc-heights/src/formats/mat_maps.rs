@@ -92,7 +92,11 @@ impl File<'_> {
     /// The points in an array, which is stored column by column.
     fn table(&self, array: &Array<'_>, kind: Kind) -> Result<HeightMap, FormatError> {
         points::check(array.rows.max(array.columns) as u64, self.max_bytes)?;
-        points::map(&array.numbers(0, array.rows.saturating_mul(array.columns), self.max_bytes)?, kind)
+        points::map(
+            &array.numbers(0, array.rows.saturating_mul(array.columns), self.max_bytes)?,
+            kind,
+            [array.rows as u64, array.columns as u64],
+        )
     }
 
     /// The map of points in three vectors.
@@ -100,7 +104,7 @@ impl File<'_> {
         points::check(n as u64, self.max_bytes)?;
         let [x, y, z] = places.map(|i| self.arrays[i].numbers(0, n, self.max_bytes));
         let points = x?.into_iter().zip(y?).zip(z?).map(|((x, y), z)| [x, y, z]);
-        let mut map = points::map_of(points.collect(), [n, 3])?;
+        let mut map = points::map_of(points.collect(), [n as u64, 3])?;
         Scalings::of(&Entries::new(), &self.entries()).apply(&mut map);
         Ok(map)
     }
@@ -147,7 +151,8 @@ impl File<'_> {
             array.class == Class::Number && (array.rows, array.columns, array.frames) == (map.rows, map.columns, 1)
         };
         let (Some(x), Some(y)) = (of(0, &is_mesh), of(1, &is_mesh)) else { return Ok(None) };
-        limit::check(32 * (map.rows * map.columns) as u64, self.max_bytes)?;
+        let points = (map.rows as u64).saturating_mul(map.columns as u64);
+        limit::check(points.saturating_mul(32), self.max_bytes)?;
         Ok(axes::of_meshes(&x.values(0, self.max_bytes)?.1, &y.values(0, self.max_bytes)?.1, map.columns))
     }
 

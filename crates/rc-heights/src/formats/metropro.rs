@@ -59,5 +59,5 @@ fn read(phases: &[u8], grid: Grid, scale: f64, sides: Option<[f64; 2]>) -> Resul
     let stored = chunks.get(..grid.len()).ok_or_else(cut_short)?;
     let mut values: Vec<f64> = stored.iter().map(|chunk| f64::from(i32::from_be_bytes(*chunk))).collect();
     scale_measured(&mut values, scale, |phase| phase >= MISSING);
-    Ok(map(grid, values, true, sides))
+    Ok(map(grid, values, true, sides).of_numbers(scale))
 }

@@ -79,7 +79,7 @@ pub use points::of_points;
 
 use self::channel::{Channels, chosen, named, only};
 use self::opened::Opened;
-use crate::{FormatError, HeightMap, ReadError};
+use crate::{FormatError, HeightMap, ReadError, ReadNote};
 
 /// The format of the file at `path`. For a gzip file, it is the format of the contents.
 ///
@@ -187,7 +187,9 @@ pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<H
     let is_text = matches!(format, Format::Csv | Format::EsriGrid | Format::Xyz | Format::Zygo)
         || format == Format::Nanoscope && is_text(bytes);
     let missing: &[f64] = if is_text { &[] } else { &params.missing };
-    checked((channel.read)()?, missing).map(|map| order::bottom_first(map, bytes, format))
+    let map = checked((channel.read)()?, missing).map(|map| order::bottom_first(map, bytes, format))?;
+    let is_unused = !params.missing.is_empty() && map.missing() == 0;
+    Ok(if is_unused { map.with_note(ReadNote::NoMark) } else { map })
 }
 
 /// The channels of a file of the given format.
@@ -221,11 +223,12 @@ fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &ReadParams) -> Channel
     })
 }
 
-/// Makes the points missing that have a mark of the user, one of `missing`.
+/// Makes the points missing that have a mark of the user, one of `missing` in the numbers of the file.
 ///
 /// Refuses infinite heights and maps without a measured point.
 fn checked(mut map: HeightMap, missing: &[f64]) -> Result<HeightMap, FormatError> {
-    marks::Marks::new(missing, &[]).erase(map.heights.values_mut());
+    let number = map.number;
+    marks::Marks::new(missing, &[]).erase_scaled(map.heights.values_mut(), number);
     let (values, nx) = (map.heights.values(), map.heights.grid().nx());
     if let Some(i) = values.iter().position(|height| height.is_infinite()) {
         return Err(FormatError::Infinite { row: i / nx, column: i % nx, value: values[i] });

@@ -303,6 +303,7 @@ const NAMES: &[(Name, &[&str])] = &[
         &[
             "nodatavalue",
             "nodata",
+            "missing",
             "missingvalue",
             "missingdatavalue",
             "baddatavalue",

@@ -109,7 +109,7 @@ fn read(data: &[u8], image: &Image) -> Result<HeightMap, FormatError> {
         (stored.placed(data, image.number, grid)?, stored.length[1])
     };
     scale_measured(&mut values, scale, |_| false);
-    let map = map(grid, values, image.is_height, Some(image.sides));
+    let map = map(grid, values, image.is_height, Some(image.sides)).of_numbers(scale);
     let unfinished = ReadNote::Unfinished { rows: lines, all: grid.ny() };
     Ok(if lines < grid.ny() { map.with_note(unfinished) } else { map })
 }
@@ -237,7 +237,8 @@ fn image(list: &List, globals: &[&List], version: u32) -> Result<Image, FormatEr
 fn number(list: &List, version: u32, length: usize, grid: Grid) -> Result<Number, FormatError> {
     let scaled: i32 = if list.get("bytes/pixel").is_some() { list.number("bytes/pixel")? } else { 2 };
     // Some files of a newer version keep two bytes. Their length is that of all points, or of the measured ones.
-    let two = [grid.ny(), list.number("valid data len y").unwrap_or(0)].map(|lines| 2 * grid.nx() * lines);
+    let two =
+        [grid.ny(), list.number("valid data len y").unwrap_or(0)].map(|lines| (2 * grid.nx()).saturating_mul(lines));
     let four = version >= FOUR_BYTES && !two.contains(&length);
     match scaled {
         2 if !four => Ok(Number::I16),

@@ -1,12 +1,15 @@
 //! NumPy files: readers of two-dimensional real arrays, and writers of `f64` arrays.
 
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Read, Write as _};
+use std::io::{self, BufReader, Read};
 use std::path::Path;
 
-use npyz::{DType, Deserialize, NpyFile, NpyHeader, Order, TypeChar, WriterBuilder as _};
+use npyz::{DType, Deserialize, NpyFile, NpyHeader, Order, TypeChar};
 use rc_core::{Field, Grid};
 
+mod write;
+
+pub use self::write::{RowWriter, write};
 use super::channel::{Channel, only};
 use super::field::{field, transposed};
 use super::fields::shown_as_line;
@@ -87,7 +90,7 @@ pub(super) fn map(
         (Kind::Rows, Order::Fortran) => Kind::Columns,
         (_, Order::Fortran) => Kind::Rows,
     };
-    points::map(&npy.values()?, kind).map(of_array)
+    points::map(&npy.values()?, kind, shape).map(of_array)
 }
 
 /// Whether the header at the start of a file is that of points.
@@ -196,7 +199,7 @@ impl<R: Read> Array<R> {
         points::check(n as u64, max_bytes)?;
         let read = records::points(&record, &mut self.file, n);
         let points = read.map_err(|cause| self.failed(cause, record.size as u64 * n as u64))?;
-        points::map_of(points, [n, 3])
+        points::map_of(points, [n as u64, 3])
     }
 }
 
@@ -207,65 +210,6 @@ fn unreadable(cause: io::Error) -> FormatError {
 
 fn header(field: &'static str, found: &(impl ToString + ?Sized), expected: &'static str) -> FormatError {
     FormatError::Field { format: Format::Npy, field, found: found.to_string(), expected }
-}
-
-/// Writes a field as a 2-D `f64` array, C order, little-endian, multiplied by `factor`.
-///
-/// The field is not copied.
-///
-/// # Errors
-/// Errors of the file system.
-pub fn write(path: &Path, field: &Field, factor: f64) -> io::Result<()> {
-    let mut out = RowWriter::create(path, field.grid(), factor)?;
-    out.write(field.values())?;
-    out.finish()
-}
-
-/// A writer of a file like that of [`write()`], from rows one after the other.
-#[derive(Debug)]
-pub struct RowWriter {
-    out: BufWriter<File>,
-    factor: f64,
-    missing: usize,
-}
-
-impl RowWriter {
-    /// Starts a file for a field on `grid`.
-    ///
-    /// # Errors
-    /// Errors of the file system.
-    pub fn create(path: &Path, grid: Grid, factor: f64) -> io::Result<Self> {
-        let shape = [grid.ny() as u64, grid.nx() as u64];
-        let file = BufWriter::with_capacity(1 << 16, File::create(path)?);
-        let plain = DType::Plain("<f8".parse().map_err(io::Error::other)?);
-        let options = npyz::WriteOptions::new_header_only().dtype(plain);
-        let out = options.shape(&shape).writer(file).write_header_only()?;
-        Ok(Self { out, factor, missing: grid.len() })
-    }
-
-    /// Writes the next values.
-    ///
-    /// # Errors
-    /// Errors of the file system, and an error for more values than the grid has elements.
-    pub fn write(&mut self, values: &[f64]) -> io::Result<()> {
-        let missing = self.missing.checked_sub(values.len());
-        self.missing = missing.ok_or_else(|| io::Error::other("more values than the grid has elements"))?;
-        for value in values {
-            self.out.write_all(&(value * self.factor).to_le_bytes())?;
-        }
-        Ok(())
-    }
-
-    /// Completes the file, and waits until the system has stored it.
-    ///
-    /// # Errors
-    /// Errors of the file system, and an error for fewer values than the grid has elements.
-    pub fn finish(self) -> io::Result<()> {
-        if self.missing > 0 {
-            return Err(io::Error::other(format!("{} values are missing", self.missing)));
-        }
-        self.out.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
-    }
 }
 
 /// Kind and size in bytes of a real type.

@@ -112,6 +112,7 @@ fn read(bytes: &[u8], scale: Option<f64>, spacing: Option<[f64; 2]>) -> Result<H
     let sides =
         spacing.map(|spacing| sides(Format::Opd, ["Pixel_size", "Pixel_size x Aspect"], grid, spacing)).transpose()?;
     let mut values = transposed(&number.values(bytes.rest(), grid)?, grid);
-    scale_measured(&mut values, scale.unwrap_or(1.0), |value| value >= missing);
-    Ok(map(grid, values, scale.is_some(), sides))
+    let number = scale.unwrap_or(1.0);
+    scale_measured(&mut values, number, |value| value >= missing);
+    Ok(map(grid, values, scale.is_some(), sides).of_numbers(number))
 }

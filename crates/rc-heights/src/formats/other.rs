@@ -40,11 +40,8 @@ const fn kind(
 }
 
 /// Containers whose contents only the name tells. Their marks are those of formats that are read.
-const CONTAINERS: [Kind; 3] = [
-    kind(0, TIFF, &["jpk"], "a JPK image", GWYDDION),
-    kind(0, TIFF, &["lext"], "an Olympus LEXT file", GWYDDION),
-    kind(0, &[b"\x89HDF"], &["datx"], "a Zygo file (.datx)", EXPORT),
-];
+const CONTAINERS: [Kind; 2] =
+    [kind(0, TIFF, &["jpk"], "a JPK image", GWYDDION), kind(0, TIFF, &["lext"], "an Olympus LEXT file", GWYDDION)];
 
 const TIFF: &[&[u8]] = &[b"II*\0", b"MM\0*"];
 
@@ -114,13 +111,7 @@ const NAMED: [Kind; 15] = [
     kind(0, &[], &["stp", "top", "tom", "gsi", "mpp"], "a WSxM file", GWYDDION),
     kind(0, &[], &["nid", "ezd", "mdt", "sxm", "sm4", "mi", "frt", "hdf"], "a file of a microscope", GWYDDION),
     kind(0, &[], &["pro", "mnt"], "a Digital Surf file, but not a surface", "save the surface as .sur"),
-    kind(
-        0,
-        &[],
-        &["vk6", "vk7", "zon", "opdx", "datx", "lext", "oir", "poir", "nms", "os3d", "tmd"],
-        INSTRUMENT,
-        EXPORT,
-    ),
+    kind(0, &[], &["vk6", "vk7", "zon", "opdx", "lext", "oir", "poir", "nms", "os3d", "tmd"], INSTRUMENT, EXPORT),
     kind(0, &[], &["npz", "pkl", "pickle", "pt"], "an archive of arrays", ARRAY),
     kind(0, &[], &["zarr", "n5", "parquet", "feather", "arrow"], "a table or array of another kind", ARRAY),
     kind(0, &[], &["vtk", "vti", "vtu", "vtp", "vts", "vtr", "pvd"], "a VTK file", ARRAY),

@@ -70,5 +70,5 @@ fn layer(header: Places<'_>, at: usize, spacing: [f64; 2]) -> Result<(Grid, [f64
 fn read(heights: &[u8], grid: Grid, sides: [f64; 2]) -> Result<HeightMap, FormatError> {
     let mut values = Number::F32.values(heights, grid)?;
     scale_measured(&mut values, MICROMETRE, |value| value == MISSING);
-    Ok(map(grid, values, true, Some(sides)))
+    Ok(map(grid, values, true, Some(sides)).of_numbers(MICROMETRE))
 }

@@ -62,7 +62,7 @@ fn read(bytes: &[u8], file: &str, grid: Grid, sides: [f64; 2], max_bytes: u64) -
     limit::check_map(grid, Number::F32.size() as u64, bytes.len() as u64, max_bytes)?;
     let mut values = Number::F32.values(&member(bytes, file, needed)?, grid)?;
     crate::map::scale(&mut values, MICROMETRE);
-    Ok(map(grid, values, true, Some(sides)))
+    Ok(map(grid, values, true, Some(sides)).of_numbers(MICROMETRE))
 }
 
 /// A file of the archive, of at most `most` bytes.

@@ -46,17 +46,18 @@ impl Kind {
     }
 }
 
-/// The map of the points in an array, whose values are row by row.
+/// The map of the points in an array, whose values are row by row or, of the transpose, column by column.
+///
+/// `shape` is that of the array, for messages.
 ///
 /// # Errors
 /// [`FormatError::Points`] when they are not on a regular grid.
-pub(super) fn map(values: &[f64], kind: Kind) -> Result<HeightMap, FormatError> {
+pub(super) fn map(values: &[f64], kind: Kind, shape: [u64; 2]) -> Result<HeightMap, FormatError> {
     let n = values.len() / 3;
     let point = |i: usize| match kind {
         Kind::Columns => [values[i], values[n + i], values[2 * n + i]],
         _ => [values[3 * i], values[3 * i + 1], values[3 * i + 2]],
     };
-    let shape = if kind == Kind::Columns { [3, n] } else { [n, 3] };
     map_of((0..n).map(point).collect(), shape)
 }
 
@@ -64,9 +65,8 @@ pub(super) fn map(values: &[f64], kind: Kind) -> Result<HeightMap, FormatError> 
 ///
 /// # Errors
 /// Those of [`map`].
-pub(super) fn map_of(points: Vec<[f64; 3]>, [rows, columns]: [usize; 2]) -> Result<HeightMap, FormatError> {
-    let refused =
-        |problem| FormatError::Points { rows: rows as u64, columns: columns as u64, problem: Box::new(problem) };
+pub(super) fn map_of(points: Vec<[f64; 3]>, [rows, columns]: [u64; 2]) -> Result<HeightMap, FormatError> {
+    let refused = |problem| FormatError::Points { rows, columns, problem: Box::new(problem) };
     let has_no_place = |[x, y, _]: &[f64; 3]| !(x.is_finite() && y.is_finite());
     if let Some(i) = points.iter().position(has_no_place) {
         let message = format!("x or y of point {i} (from 0) is not finite");
@@ -122,15 +122,15 @@ mod tests {
     fn points_become_a_map_only_on_a_grid() {
         let points: Vec<[f64; 3]> =
             (0..12).rev().map(|i| [f64::from(i % 4) * 0.5, f64::from(i / 4), f64::from(i * i)]).collect();
-        let rows = map(points.as_flattened(), Kind::Rows).expect("a map");
+        let rows = map(points.as_flattened(), Kind::Rows, [12, 3]).expect("a map");
         assert_eq!((rows.heights.grid().nx(), rows.heights.grid().ny(), rows.sides), (4, 3, Some([2.0, 3.0])));
         assert!(rows.heights.values().iter().zip(0..12).all(|(z, i)| (z - f64::from(i * i)).abs() < 1e-12));
         let columns: Vec<f64> = (0..3).flat_map(|axis| points.iter().map(move |point| point[axis])).collect();
-        assert_eq!(map(&columns, Kind::Columns), Ok(rows));
+        assert_eq!(map(&columns, Kind::Columns, [3, 12]), Ok(rows));
         let scattered: Vec<f64> = (0..300).map(|i| f64::from(i * i % 271)).collect();
-        let error = map(&scattered, Kind::Rows).expect_err("no grid").to_string();
+        let error = map(&scattered, Kind::Rows, [100, 3]).expect_err("no grid").to_string();
         assert!(error.contains("an array of 100 x 3 numbers is taken as a list of points"), "{error}");
-        let error = map(&[0.0, f64::NAN, 1.0], Kind::Rows).expect_err("no place").to_string();
+        let error = map(&[0.0, f64::NAN, 1.0], Kind::Rows, [1, 3]).expect_err("no place").to_string();
         assert!(error.contains("point 0"), "{error}");
     }
 }

@@ -208,7 +208,7 @@ impl Scalings {
         self.mark(map.heights.values_mut());
         let (unit, factor) = self.heights();
         crate::map::scale(map.heights.values_mut(), factor);
-        map.height_unit = unit;
+        (map.height_unit, map.number) = (unit, factor);
         if let (Some(unit), Some(sides), Unit::Unnamed) = (self.side_unit, &mut map.sides, map.side_unit) {
             crate::map::scale(sides, unit.metres());
             map.side_unit = Unit::Metre;

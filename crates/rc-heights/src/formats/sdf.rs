@@ -37,7 +37,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<HeightMap, FormatError> {
     crate::map::scale(&mut values, z);
     let sides = Some([x * header.grid.nx() as f64, y * header.grid.ny() as f64]);
     let heights = field(header.grid, values);
-    Ok(HeightMap::new(heights, Unit::Metre, sides, Unit::Metre))
+    Ok(HeightMap::new(heights, Unit::Metre, sides, Unit::Metre).of_numbers(z))
 }
 
 fn binary(mut bytes: Bytes<'_>, mark: &[u8]) -> Result<(Header, Vec<f64>), FormatError> {

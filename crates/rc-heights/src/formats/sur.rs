@@ -173,7 +173,9 @@ impl Object<'_> {
             }
         }
         flip(&mut values, self.grid, [self.inversion == 2, self.inversion == 3]);
-        Ok(map(self.grid, values, is_height, self.sides))
+        // With an offset, heights are not numbers of the file times a factor.
+        let number = if offset == 0.0 { scale } else { 1.0 };
+        Ok(map(self.grid, values, is_height, self.sides).of_numbers(number))
     }
 
     /// Refuses integers that are there and need too much memory.

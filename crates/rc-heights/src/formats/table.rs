@@ -101,7 +101,7 @@ impl Table {
 
     /// Gives the table the size that the heading names, if it has as many numbers.
     fn wrap(&mut self, heading: &Heading, ragged: Option<FormatError>) -> Result<(), FormatError> {
-        if let ([Some(columns), Some(rows)], true) = (heading.counts, ragged.is_some() || self.size[0] == 1)
+        if let [Some(columns), Some(rows)] = heading.counts
             && columns.checked_mul(rows) == Some(self.values.len())
         {
             self.size = [columns, rows];

@@ -77,12 +77,12 @@ pub enum Counter {
 /// If there are two such values, it is the more frequent one.
 #[must_use]
 pub fn marks(heights: &Field) -> Option<Mark> {
-    let mut values: Vec<f64> = heights.values().iter().copied().filter(|height| height.is_finite()).collect();
     let mut found: Vec<Mark> = Vec::new();
     while found.len() < MOST_MARKS {
-        let Some(mark) = farthest(&values).filter(|mark| is_mark(mark.value)) else { break };
         #[expect(clippy::float_cmp, reason = "all points with a mark have the same value")]
-        values.retain(|value| *value != mark.value);
+        let others = |height: &f64| height.is_finite() && found.iter().all(|mark| mark.value != *height);
+        let values = || heights.values().iter().copied().filter(others);
+        let Some(mark) = farthest(&values).filter(|mark| is_mark(mark.value)) else { break };
         found.push(mark);
     }
     found.into_iter().max_by_key(|mark| mark.count)
@@ -90,20 +90,20 @@ pub fn marks(heights: &Field) -> Option<Mark> {
 
 /// The lowest or highest value, if it is far from the others.
 #[expect(clippy::float_cmp, reason = "all points with a mark have the same value")]
-fn farthest(values: &[f64]) -> Option<Mark> {
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+fn farthest<I: Iterator<Item = f64>>(values: &impl Fn() -> I) -> Option<Mark> {
+    let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     // The next values after the ends.
     let (mut second, mut last, mut counts) = (f64::INFINITY, f64::NEG_INFINITY, [0; 2]);
-    for value in values {
-        if *value == low {
+    for value in values() {
+        if value == low {
             counts[0] += 1;
         } else {
-            second = second.min(*value);
+            second = second.min(value);
         }
-        if *value == high {
+        if value == high {
             counts[1] += 1;
         } else {
-            last = last.max(*value);
+            last = last.max(value);
         }
     }
     // Any other height is far from a plate. Only one of hundreds of metres is then a mark.

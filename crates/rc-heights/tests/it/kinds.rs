@@ -19,7 +19,6 @@ const FILES: &[(&str, &[u8], &str)] = &[
     ("part.dat", b"ply\nformat ascii 1.0\n", "a PLY mesh"),
     ("a.off", b"OFF\n3 1 0\n", "an OFF mesh"),
     ("a.pcd", b"# .PCD v.7\n", "a point cloud"),
-    ("a.datx", b"\x89HDF\r\n\x1a\n", "a Zygo file"),
     ("a.vk6", b"VK6\0", "a Keyence file"),
     ("a.zon", b"KPK0", "a Keyence file (.zon)"),
     ("a.nid", b"[DataSet]\r\n", "a Nanosurf file"),
