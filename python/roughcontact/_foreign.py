@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -28,6 +29,11 @@ def tell(doubts: Sequence[str], strict: bool, stacklevel: int = 3) -> None:
         raise ValueError(f"{doubts[0]} (an error because of strict=True)")
     for doubt in doubts:
         warnings.warn(doubt, InputWarning, stacklevel=stacklevel)
+
+
+def of_keywords(text: str) -> str:
+    """A message with keywords in place of the flags of the command line, but for those of ``rc surface``."""
+    return re.sub(r"(?<!rc surface )--([a-z-]+)", lambda flag: flag[1].replace("-", "_"), text)
 
 
 class Found(NamedTuple):

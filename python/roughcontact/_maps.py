@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from roughcontact import _core
-from roughcontact._foreign import checked_shape, found_in, refuse_line_scan, tell
+from roughcontact._foreign import checked_shape, found_in, of_keywords, refuse_line_scan, tell
 from roughcontact._keys import Grid, LengthUnit, Mask, Missing, Path, length, plain
 
 if TYPE_CHECKING:
@@ -340,7 +340,8 @@ def prepare(
         "--repeat": repeat,
     }
     words = [word for flag, value in plain(flags).items() for word in (flag, str(value))]
-    treated, sides_after = _core.treat(array, sides, words)
+    treated, sides_after, doubts = _core.treat(array, sides, words)
+    tell([of_keywords(text) for text in doubts], strict)
     return of_parts(treated, pair(sides_after))
 
 

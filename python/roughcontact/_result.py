@@ -6,7 +6,6 @@ import io
 import json
 import os
 import pathlib
-import re
 import tempfile
 from collections.abc import Sequence
 from functools import cached_property
@@ -16,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughcontact import _core
+from roughcontact._foreign import of_keywords
 from roughcontact._keys import Path
 from roughcontact._records import Certificate, ContactSpot, Elements, Floats, Leakage, StressDistribution
 from roughcontact._stored import FILES, Source, Stored, files_in
@@ -32,12 +32,7 @@ def _locked(field: Floats) -> Floats:
 def told(result: Result) -> list[str]:
     """The texts of what the solve warned of, as far as they are known without the summary, which takes longer."""
     warnings_of = getattr(result._source, "warnings", None)
-    return [] if warnings_of is None else [_of_keywords(text) for _, text in warnings_of()]
-
-
-def _of_keywords(text: str) -> str:
-    """A message with keywords in place of the flags of the command line, but for those of ``rc surface``."""
-    return re.sub(r"(?<!rc surface )--([a-z-]+)", lambda flag: flag[1].replace("-", "_"), text)
+    return [] if warnings_of is None else [of_keywords(text) for _, text in warnings_of()]
 
 
 class Result:

@@ -209,6 +209,24 @@ fn shapes_have_no_spikes() {
 }
 
 #[test]
+fn worn_and_stepped_surfaces_have_no_spikes() {
+    // Edges and kinks of such surfaces leave single points far from their neighbours, but not only single points.
+    let shapes: [(&str, fn(f64) -> f64); 4] =
+        [("terraces", |z| z.round()), ("worn", |z| z.min(0.0)), ("lognormal", f64::exp), ("cubed", |z| z * z * z)];
+    for (name, shape) in shapes {
+        let mut alarms = 0;
+        for seed in 0..24 {
+            let (rough, n) = (surface(128, [6.0, 8.0, 12.0][seed as usize % 3], 0.7, 900 + seed), 128);
+            let rms = (rough.values().iter().map(|z| z * z).sum::<f64>() / f64::from(n * n)).sqrt();
+            let values = rough.values().iter().map(|z| shape(z / rms) + 0.02 * z / rms).collect();
+            let field = Field::new(rough.grid(), values).expect("a field");
+            alarms += usize::from(spikes(&field, true).is_some());
+        }
+        assert!(alarms <= 2, "{name}: {alarms} of 24");
+    }
+}
+
+#[test]
 fn spikes_on_plateaus_are_found() {
     let mut field = Field::from_fn(Grid::square(128).expect("a grid"), |DVec2 { x, y }| {
         f64::from((16.0 * x).rem_euclid(2.0) < 1.0 && (16.0 * y).rem_euclid(2.0) < 1.0)

@@ -22,7 +22,7 @@ use crate::scene::scene_of;
 /// An array (m), and the known sides of its rectangle along x and y (m).
 type MapParts<'py> = (Bound<'py, PyArray2<f64>>, Option<[f64; 2]>);
 
-/// The parts of a map, and what was assumed about it.
+/// The parts of a map, and the doubts about it.
 type ReadMap<'py> = (Bound<'py, PyArray2<f64>>, Option<[f64; 2]>, Vec<String>);
 
 fn parts(py: Python<'_>, map: HeightMap) -> PyResult<MapParts<'_>> {
@@ -127,14 +127,14 @@ pub(crate) fn inspect_result(py: Python<'_>, folder: PathBuf) -> PyResult<String
     on_threads(py, 0, move || inspect::result(&folder))?.map_err(raised)
 }
 
-/// The height map after treatments, which have the names of the flags of `rc surface`.
+/// The height map after treatments, which have the names of the flags of `rc surface`, and the doubts about it.
 #[pyfunction]
 pub(crate) fn treat<'py>(
     py: Python<'py>,
     heights: Heights<'py>,
     sides: Option<[f64; 2]>,
     words: Vec<String>,
-) -> PyResult<MapParts<'py>> {
+) -> PyResult<ReadMap<'py>> {
     let treatments = surfaces::treatments(&words).map_err(raised)?;
     let map = arrays::map_of(&heights, sides)?;
     let treated = on_threads(py, 0, move || {
@@ -144,7 +144,9 @@ pub(crate) fn treat<'py>(
             let checked = Budget::new(None).check_grid(&format!("the map after {treatment}"), grid);
             checked.map_err(|error| raised(error.into()))?;
         }
-        rc_heights::apply(map, &treatments).map_err(|cause| bad_input(format!("heights: {cause}")))
+        surfaces::prepared(map, &treatments).map_err(|cause| bad_input(format!("heights: {cause}")))
     })?;
-    parts(py, treated?.0)
+    let (map, doubts) = treated?;
+    let (heights, sides) = parts(py, map)?;
+    Ok((heights, sides, doubts.into_iter().map(|warning| warning.text).collect()))
 }

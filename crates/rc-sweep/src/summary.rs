@@ -242,7 +242,12 @@ impl Summary {
     #[must_use]
     pub fn cells(&self) -> Cells {
         let Ok(Value::Object(mut cells)) = serde_json::to_value(self) else { unreachable!("a record is an object") };
-        let codes = self.warnings.iter().map(|warning| Value::from(warning.code.name())).collect::<Vec<_>>();
+        let mut codes: Vec<&str> = Vec::new();
+        for warning in &self.warnings {
+            if !codes.contains(&warning.code.name()) {
+                codes.push(warning.code.name());
+            }
+        }
         cells.insert("warnings".to_owned(), codes.into());
         if let (Some(leakage), Some(_)) = (&self.leakage, cells.shift_remove("leakage")) {
             cells.extend(leakage.cells().map(|(column, value)| (column.to_owned(), value)));

@@ -6,7 +6,7 @@ use clap::Args;
 use rc_heights::{Layout, LengthUnit, Mask};
 use rc_sweep::memory::ByteSize;
 
-use crate::scene::keys::{RunKeys, SurfaceKeys};
+use crate::scene::keys::{RunKeys, Scene, SurfaceKeys};
 use crate::scene::values::{GridSpec, Marks};
 
 /// Arguments of `rc inspect`.
@@ -90,6 +90,12 @@ impl InspectArgs {
             read_limit: self.memory_limit,
             ..SurfaceKeys::default()
         }
+    }
+
+    /// The flags over the keys of a scene.
+    pub(crate) fn over_scene(&self) -> Scene {
+        let run = RunKeys { memory_limit: self.memory_limit, ..RunKeys::default() };
+        Scene { surface: SurfaceKeys { heights: None, ..self.keys() }, run, ..Scene::default() }
     }
 
     /// How the command prints its warnings.

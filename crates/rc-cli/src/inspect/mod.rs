@@ -23,7 +23,7 @@ use crate::error::CliError;
 use crate::files::names::SCENE_FILE;
 use crate::files::result::{ResultFolder, SUMMARY_FILE};
 use crate::scene::heights::CellOfMap;
-use crate::scene::keys::{RunKeys, Scene, SurfaceKeys};
+use crate::scene::keys::{Scene, SurfaceKeys};
 use crate::scene::surface::LoadedSurface;
 use crate::scene::values::GridSpec;
 use crate::scene::{file, heights, resolve};
@@ -55,13 +55,18 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
         Some(_) if args.out.is_some() => {
             return Err(CliError::input("out: the pictures of a result are made by rc plot; omit --out"));
         }
-        Some(folder) => inspect_result(&folder, args.json)?,
+        Some(folder) => {
+            let (text, warnings) = inspect_result(&folder, args.json)?;
+            refuse(&warnings, args.strict, "")?;
+            tell(&warnings, &args.run_keys());
+            text
+        }
         None if args.file.file_name().is_some_and(|name| name == "pressure.npy") => {
             let statistics = PressureStatistics::of(&finite(&args.file, npy::read(&args.file)?)?);
             if args.json { to_json(&statistics) } else { text::pressure(&statistics, statistics.grid) }
         }
         None if args.spectrum => inspect_waves(args)?,
-        None if of_scene => shown(args, &of_surface(&args.file)?)?,
+        None if of_scene => shown(args, &of_surface(&args.file, args.over_scene())?)?,
         None => inspect_heights(args)?,
     };
     terminal::print(&text)
@@ -100,7 +105,7 @@ fn result_folder(file: &Path) -> Option<PathBuf> {
 /// # Errors
 /// [`CliError::Input`] with the name of the file that is missing or wrong.
 pub fn result(folder: &Path) -> Result<String, CliError> {
-    inspect_result(folder, true)
+    inspect_result(folder, true).map(|(text, _)| text)
 }
 
 /// The text of `rc inspect --json` for a height map in metres.
@@ -119,20 +124,24 @@ pub fn height_map(name: &Path, map: HeightMap, sides: [Option<f64>; 2]) -> Resul
 /// [`CliError::Input`] when the grid is too coarse for the waves.
 pub fn surface(surface: &LoadedSurface, side: f64) -> Result<String, CliError> {
     let heights = surface.heights()?;
-    Ok(to_json(&SurfaceRecord::of(&heights, side, surface.moments())))
+    let record = SurfaceRecord::of(&heights, side, surface.moments());
+    let warnings = [&surface.warnings[..], &record.shape().warnings()].concat();
+    Ok(to_json(&SurfaceRecord { warnings, ..record }))
 }
 
-fn inspect_result(folder: &Path, json: bool) -> Result<String, CliError> {
+/// The text about a result, and its warnings.
+fn inspect_result(folder: &Path, json: bool) -> Result<(String, Vec<Warning>), CliError> {
     let result = ResultFolder::read(folder)?;
     let sides = result.sides();
     let elements = result.summary.grid;
     let pressure = PressureStatistics::of(&finite(&folder.join("pressure.npy"), result.pressure)?);
-    if json {
-        let warnings = result.summary.warnings.clone();
-        return Ok(to_json(&ResultStatistics { summary: result.summary, pressure, warnings }));
-    }
-    tell(&result.summary.warnings, &RunKeys::default());
-    Ok(solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &text::pressure(&pressure, elements))
+    let warnings = result.summary.warnings.clone();
+    let text = if json {
+        to_json(&ResultStatistics { summary: result.summary, pressure, warnings: warnings.clone() })
+    } else {
+        solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &text::pressure(&pressure, elements)
+    };
+    Ok((text, warnings))
 }
 
 /// A surface with its statistics.
@@ -145,6 +154,9 @@ pub(crate) struct Inspected {
 impl Inspected {
     /// A map in metres, which may have missing points.
     fn of_map(path: &Path, map: HeightMap, given: [Option<f64>; 2]) -> Result<Self, CliError> {
+        if map.heights.values().iter().any(|height| height.is_infinite()) {
+            heights::check_finite(path, &map.heights)?;
+        }
         if map.heights.max() <= map.heights.min() {
             let message =
                 format_args!("all heights are {}; a flat surface has no statistics", digits(map.heights.max(), 6));
@@ -179,16 +191,16 @@ impl Inspected {
     }
 }
 
-/// The surface of a scene, or of a folder with one.
+/// The surface of a scene, or of a folder with one, under the flags `over` it.
 ///
 /// # Errors
 /// [`CliError::Input`].
-pub(crate) fn of_surface(path: &Path) -> Result<Inspected, CliError> {
-    let scene = resolve::layers(Some(path), Scene::default())?;
+pub(crate) fn of_surface(path: &Path, over: Scene) -> Result<Inspected, CliError> {
+    let scene = resolve::layers(Some(path), over)?;
     resolve::check_size(&scene.surface)?;
     let setup = resolve::surface(scene.surface)?;
     let surface = setup.load()?;
-    Budget::new(None).check_grid("the surface", surface.grid)?;
+    Budget::new(scene.run.memory_limit).check_grid("the surface", surface.grid)?;
     let heights = surface.heights()?.into_owned();
     let record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments());
     let warnings = [surface.warnings, record.shape().warnings()].concat();
@@ -200,7 +212,7 @@ pub(crate) fn of_surface(path: &Path) -> Result<Inspected, CliError> {
 /// # Errors
 /// [`CliError`].
 pub(crate) fn draw_surface(path: &Path, folder: &Path) -> Result<Vec<String>, CliError> {
-    let Inspected { heights, record } = of_surface(path)?;
+    let Inspected { heights, record } = of_surface(path, Scene::default())?;
     files::check_folder(folder)?;
     Ok(pictures::write(folder, &heights, &record)?)
 }

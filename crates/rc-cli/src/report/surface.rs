@@ -13,6 +13,7 @@ use crate::error::CliError;
 use crate::inspect::record::SurfaceRecord;
 use crate::inspect::text::{parameter_lines, surface_lines};
 use crate::inspect::{Inspected, of_surface};
+use crate::scene::keys::Scene;
 use rc_sweep::to_json;
 
 /// The data of a page of a surface, without those of all pages.
@@ -40,7 +41,7 @@ pub(super) struct SurfaceBody {
 /// # Errors
 /// [`CliError::Input`].
 pub(super) fn page(path: &Path) -> Result<Page<SurfaceBody>, CliError> {
-    let Inspected { heights, record } = of_surface(path)?;
+    let Inspected { heights, record } = of_surface(path, Scene::default())?;
     let lowest = heights.min();
     let pixels = pixel_means(heights.grid(), |i| (heights.values()[i] - lowest) * record.cell);
     let note = if pixels.grid() == heights.grid() {

@@ -24,18 +24,18 @@ pub struct WaveFile {
 impl WaveFile {
     /// Reads the coefficients in `path`.
     ///
-    /// `scales` tells the height of the number 1, and `side` is λ (m).
+    /// `scales` tells the height of the number 1, `max_bytes` limits the memory, and `side` is λ (m).
     ///
     /// # Errors
     /// [`CliError::Input`] when the file cannot be read, or its waves do not make a surface.
-    pub(super) fn read(path: &Path, scales: Scales, side: f64) -> Result<Self, CliError> {
+    pub(super) fn read(path: &Path, (scales, max_bytes): (Scales, u64), side: f64) -> Result<Self, CliError> {
         let one = scales.height_scale.unwrap_or_else(|| scales.unit.map_or(1.0, LengthUnit::metres));
         if !(one.is_finite() && one != 0.0) {
             return Err(CliError::input(format_args!(
                 "height_scale: must be finite (m) and different from 0, not {one}"
             )));
         }
-        let coefficients = spectrum::read(path)?;
+        let coefficients = spectrum::read_within(path, max_bytes)?;
         let wave = |&Coefficient { kx, ky, re, im }: &Coefficient| Wave { kx, ky, amplitude: Complex64::new(re, im) };
         let surface = Surface::from_waves(coefficients.iter().map(wave).collect());
         let surface = surface.map_err(|cause| CliError::in_file(path, cause))?.scaled(one / side);

@@ -56,7 +56,7 @@ impl Job {
     pub(super) fn dry_run(&self) -> Result<(), CliError> {
         let (kernel, surface) = (self.scene.contact.kernel()?, self.scene.surface.load()?);
         let problem = self.scene.problem(&surface, &*kernel, self.budget());
-        self.doubt(&problem.warnings())?;
+        together(self.ranks(), self.doubt(&problem.warnings()))?;
         dry_run::run(&problem, self.threads, &self.run)
     }
 
@@ -95,7 +95,7 @@ impl Job {
         let kernel = self.scene.contact.kernel()?;
         let surface = together(ranks, self.scene.surface.load())?;
         let problem = self.scene.problem(&surface, &*kernel, self.budget());
-        progress.hidden(|| self.doubt(&problem.warnings()))?;
+        progress.hidden(|| together(ranks, self.doubt(&problem.warnings())))?;
         let solved = self.scene.solve(problem, self.started, &progress)?;
         self.finish(&solved, progress)
     }

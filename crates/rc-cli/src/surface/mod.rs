@@ -9,7 +9,7 @@ pub use treatment::treatments;
 
 use std::path::Path;
 
-use rc_heights::{Effect, Treatment};
+use rc_heights::{Effect, HeightMap, TreatError, Treatment};
 use rc_sweep::memory::Budget;
 use rc_sweep::{Warning, files, to_json};
 
@@ -115,10 +115,24 @@ fn treated(keys: SurfaceKeys, treatments: &[Treatment], budget: Budget) -> Resul
     let (map, after) = rc_heights::apply(map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
     effects.extend(after);
     warnings.extend(filled(treatments, &effects));
+    warnings.extend(doubts::of_record(&path));
     let CellOfMap { cell, cell_y, .. } = CellOfMap::of(&path, &map, [None, None])?;
     let expected = keys.grid.map(resolve::checked_grid).transpose()?;
     let setup = resolve::surface_in_cell(SurfaceKeys { cell, cell_y, grid: None, ..keys })?;
     Ok(Prepared { surface: setup.of_map(&path, map, expected)?, side: setup.cell.side(), effects, warnings, notes })
+}
+
+/// A map in metres after treatments that are checked, and the doubts that `rc surface` has about it.
+///
+/// # Errors
+/// [`TreatError`].
+pub fn prepared(map: HeightMap, treatments: &[Treatment]) -> Result<(HeightMap, Vec<Warning>), TreatError> {
+    let mut warnings = doubts::of_map(&map);
+    let mut effects = vec![Effect::of(&map, "as read")];
+    let (map, after) = rc_heights::apply(map, treatments)?;
+    effects.extend(after);
+    warnings.extend(filled(treatments, &effects));
+    Ok((map, warnings))
 }
 
 /// A doubt about the points that a treatment has filled.

@@ -54,6 +54,7 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
     let workers = |elements: f64| Workers { threads, at_once: budget.solves_at_once(factor * elements) };
     let finished = ensemble.run(wanted, &rows, workers);
     bar.clear();
+    let doubted = doubts.tell(run);
     let Some(means) = finished.map_err(messages::of_run)? else {
         return Err(messages::mean_out_of_time(run.time_limit, ensemble.kept().rows().len()));
     };
@@ -74,7 +75,6 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
             ))?;
         }
     }
-    let doubted = doubts.tell(run);
     messages::check_means(&means).and(doubted)
 }
 

@@ -94,10 +94,10 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
             terminal::print(&format!("{rows}{before} in {seconds} s, {threads}\n\nwritten to {table}\n"))?;
         }
     }
+    let doubted = doubts.tell(&surfaces.run);
     if let (missing @ 1.., Some(limit)) = (n_rows - kept.rows().len(), surfaces.run.time_limit) {
         return Err(messages::out_of_time(limit, missing, n_rows));
     }
-    let doubted = doubts.tell(&surfaces.run);
     messages::check_converged(kept.rows(), &table).and(doubted)
 }
 

@@ -19,6 +19,12 @@ const STEEPEST: f64 = 1.0;
 /// Range of heights relative to the shorter side above which a map is hardly a roughness.
 const DEEPEST: f64 = 1.0 / 3.0;
 
+/// Range of heights (m) below which a map is no surface: an atom has 1e-10.
+const SHALLOWEST: f64 = 1e-10;
+
+/// rms slope below which a map is no surface. That of the best mirrors is about 1e-6.
+const FLATTEST: f64 = 1e-7;
+
 /// rms slope above which the theory is inaccurate.
 ///
 /// The theory of the half-space neglects the squares of slopes, here about a tenth.
@@ -63,6 +69,15 @@ impl Shape {
             );
             found.push(Warning::new(Units, text));
         }
+        if self.range < SHALLOWEST || self.rms_slope < FLATTEST {
+            let text = format!(
+                "heights over a range of {} on a side of {}, with an rms slope of {slope}, are smoother than any surface; check \
+                 the units of heights (--unit, --height-unit, --height-scale) and the size (--cell)",
+                engineering(self.range, "m"),
+                engineering(shorter, "m")
+            );
+            found.push(Warning::new(Units, text));
+        }
         if self.rms_slope > SMALL_SLOPE {
             let text = format!(
                 "an rms slope of {slope} is too steep for the theory, which neglects squares of slopes; expect errors of \
@@ -94,7 +109,7 @@ pub(crate) fn of_map(map: &HeightMap) -> Vec<Warning> {
             Counter::Column => ("column", "line numbers"),
         };
         let text =
-            format!("the first {what} counts 0, 1, 2, ... or 1, 2, 3, ... like {part}; if so, remove it from the file");
+            format!("the first {what} is evenly spaced, like coordinates or {part}; if so, remove it from the file");
         found.push(Warning::new(CounterCode, text));
     }
     if thin {

@@ -46,11 +46,7 @@ impl<'a> Near<'a> {
         let mut first = self.ring(1, &group);
         let complete = first.len() + group.len() > NEIGHBOURS.len();
         let base = if first.len() < FEWEST { return None } else { median(&mut first)? };
-        let mut second = self.ring(2, &group);
-        let step = if second.len() < FEWEST { 0.0 } else { median(&mut second)? - base };
-        // A paraboloid with these medians at squares 1.5 and 5 of the distance.
-        let raw = self.level([0, 0]) - base;
-        let mut height = smaller(raw, raw + step * (1.5 / 3.5));
+        let (step, mut height) = self.above(base, &group)?;
         if !complete {
             height = smaller(height, self.level([0, 0]) - self.extrapolated(&group)?);
             // A membrane that fills a point at the border is wrong by a part of the step to the next point.
@@ -67,6 +63,23 @@ impl<'a> Near<'a> {
             height.abs() > CLEAR * first[2 * first.len() / 3]
         };
         (is_far && is_clear() && height.abs() > UNUSUAL * self.map.deviation_near(self.at)).then_some(height)
+    }
+
+    /// The height of the point above its neighbours, whatever else deviates near it. 0 if too few are measured.
+    pub(super) fn height(&self) -> f64 {
+        let mut first = self.ring(1, &[]);
+        let base = if first.len() < FEWEST { None } else { median(&mut first) };
+        base.and_then(|base| self.above(base, &[])).map_or(0.0, |(_, height)| height)
+    }
+
+    /// The step from `base`, the level of the first ring, to the second, and the height of the point above a paraboloid
+    /// through both.
+    fn above(&self, base: f64, group: &[[isize; 2]]) -> Option<(f64, f64)> {
+        let mut second = self.ring(2, group);
+        let step = if second.len() < FEWEST { 0.0 } else { median(&mut second)? - base };
+        // The medians are at squares 1.5 and 5 of the distance.
+        let raw = self.level([0, 0]) - base;
+        Some((step, smaller(raw, raw + step * (1.5 / 3.5))))
     }
 
     /// The height of a point near this one above the plane of the local slope. `NaN` if it is missing.

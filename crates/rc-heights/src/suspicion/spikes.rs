@@ -6,12 +6,18 @@
 //! - is alone: points of its level form a group of at most four, so that lines, edges and corners of plateaus are none;
 //! - is not the summit of a slope: what the next ring of neighbours says about the shape does not explain it;
 //! - deviates as much from what is usual near it, because one part of a map may be rougher than another, and much more
-//!   than its neighbours differ from each other.
+//!   than its neighbours differ from each other;
+//! - is rare: on a map with edges, pits or posts, more points deviate as much without being alone.
+
+use std::collections::HashSet;
 
 use rc_core::Field;
 
-use super::map::Map;
+use super::map::{Map, NEIGHBOURS, square};
 use super::near::{CANDIDATE, Near, SPIKE};
+
+/// Deviation of other points relative to a spike from which on they are like it.
+const AS_MUCH: f64 = 0.5;
 
 /// Spikes of a map.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,9 +44,26 @@ impl Spikes {
 pub fn spikes(heights: &Field, periodic: bool) -> Option<Spikes> {
     let map = Map::new(heights, periodic)?;
     let deviation = map.usual_deviation()?;
-    let mut found = Spikes { count: 0, largest: 0.0, deviation, at: Vec::new() };
+    let (mut alone, mut others) = (Vec::<([isize; 2], f64)>::new(), Vec::new());
     map.each_beyond(CANDIDATE * SPIKE * deviation, |x, y| {
-        let Some(height) = Near::new(&map, [x, y]).spike(deviation) else { return };
+        let near = Near::new(&map, [x, y]);
+        match near.spike(deviation) {
+            Some(height) => alone.push(([x, y], height)),
+            None if NEIGHBOURS.iter().all(|[dx, dy]| map.at(x + dx, y + dy).is_finite()) => {
+                others.push(([x, y], near.height().abs()));
+            }
+            None => {}
+        }
+    });
+    // The neighbours of a spike deviate because of it, and points with neighbours on one side because of the slope.
+    let places: HashSet<[isize; 2]> = alone.iter().map(|(at, _)| *at).collect();
+    let is_beside = |[x, y]: [isize; 2]| square(2).any(|[dx, dy]| places.contains(&[x + dx, y + dy]));
+    let mut others: Vec<f64> = others.into_iter().filter(|(at, _)| !is_beside(*at)).map(|(_, other)| other).collect();
+    others.sort_unstable_by(f64::total_cmp);
+    let as_much = |height: f64| others.len() - others.partition_point(|other| *other < AS_MUCH * height.abs());
+    let is_rare = |height: f64| as_much(height) <= places.len();
+    let mut found = Spikes { count: 0, largest: 0.0, deviation, at: Vec::new() };
+    for ([x, y], height) in alone.into_iter().filter(|(_, height)| is_rare(*height)) {
         found.count += 1;
         if height.abs() > found.largest.abs() {
             found.largest = height;
@@ -48,6 +71,6 @@ pub fn spikes(heights: &Field, periodic: bool) -> Option<Spikes> {
         if found.at.len() < Spikes::MOST_PLACES {
             found.at.push((x as usize, y as usize));
         }
-    });
+    }
     (found.count > 0).then_some(found)
 }

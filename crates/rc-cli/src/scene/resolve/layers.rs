@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use rc_heights::{FormatError, ReadError};
+
 use crate::error::CliError;
 use crate::files::names::SCENE_FILE;
 use crate::scene::file;
@@ -41,12 +43,18 @@ fn lower_layer(path: &Path) -> Result<Scene, CliError> {
         }
         return file::read(&file);
     }
-    let is_scene = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
-    if !is_scene && rc_heights::format_of(path).is_ok() {
-        let surface = SurfaceKeys { heights: Some(path.to_owned()), ..SurfaceKeys::default() };
-        return Ok(Scene { surface, ..Scene::default() });
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+        return file::read(path);
     }
-    file::read(path)
+    match rc_heights::format_of(path) {
+        Ok(_) => {
+            let surface = SurfaceKeys { heights: Some(path.to_owned()), ..SurfaceKeys::default() };
+            Ok(Scene { surface, ..Scene::default() })
+        }
+        // A scene may have any name.
+        Err(ReadError { problem: FormatError::Unknown | FormatError::Unreadable(_), .. }) => file::read(path),
+        Err(error) => Err(error.into()),
+    }
 }
 
 /// Refuses keys that exclude each other in one place.

@@ -87,7 +87,7 @@ fn of_waves(keys: SurfaceKeys, path: &Path, cell: PeriodicCell, grid: Option<Gri
             "cell_y: applies to height maps; a surface of waves has a square cell, so omit it",
         ));
     }
-    let waves = Arc::new(WaveFile::read(path, keys.scales(), cell.side())?);
+    let waves = Arc::new(WaveFile::read(path, (keys.scales(), keys.read_params().max_bytes), cell.side())?);
     let grid = resolving_grid(grid, waves.surface().waves())?;
     let keys = SurfaceKeys { grid: Some(GridSpec { nx: grid.nx(), ny: grid.ny() }), ..keys };
     Ok(SurfaceSetup::new(cell, Source::Waves { path: path.to_owned(), waves, grid }, keys))
