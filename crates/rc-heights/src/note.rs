@@ -3,6 +3,8 @@
 use rc_core::quantity::{count, digits};
 use thiserror::Error;
 
+use crate::LengthUnit;
+
 /// A note of a reader, one line each.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -15,6 +17,15 @@ pub enum ReadNote {
     /// No unit of the sides is named, so they were taken as metres.
     #[error("the file names no unit of its sides, so they are taken as metres; --unit says otherwise")]
     SidesAssumedMetres,
+    /// Only the sides have a unit, so that it was taken for the heights too.
+    #[error(
+        "the file names a unit of its sides only, so the heights are in it too ({unit}); if not, name theirs in the file: \
+         # Value units: nm"
+    )]
+    HeightsLikeSides {
+        /// The unit.
+        unit: LengthUnit,
+    },
     /// The first row of the file is the top of the picture, and rows were reversed.
     #[error("the first row of the file is the top, so rows are reversed: y points up")]
     RowsReversed,
@@ -53,7 +64,7 @@ impl ReadNote {
     /// Whether the note is an assumption that the user should confirm.
     #[must_use]
     pub fn is_assumption(&self) -> bool {
-        matches!(self, Self::HeightsAssumedMetres | Self::SidesAssumedMetres)
+        matches!(self, Self::HeightsAssumedMetres | Self::SidesAssumedMetres | Self::HeightsLikeSides { .. })
     }
 }
 

@@ -6,18 +6,39 @@ use rc_core::{Field, Grid, PeriodicCell};
 use rc_heights::{Format, HeightMap, Layout, ReadNote, ReadParams, SAME_LENGTH, Scales};
 
 use super::as_read::AsRead;
+use super::file;
 use crate::error::CliError;
+use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SCENE_FILE};
+use crate::files::result::SUMMARY_FILE;
 use rc_core::quantity::engineering;
 
 /// Reads a height map of any format of `rc-heights`, in metres.
 ///
-/// Unmeasured points are `NaN`. Row `iy` of the file is row `iy` of the field.
+/// Unmeasured points are `NaN`. Row `iy` of the file is row `iy` of the field. The map in a folder of `rc surface` or
+/// `rc solve` is in metres, and has the size of its cell.
 ///
 /// # Errors
 /// [`CliError::Input`] when the file cannot be read, is damaged or does not have the channel, or when `scales` does not
 /// fit its units.
 pub fn read(path: &Path, params: &ReadParams, scales: Scales) -> Result<HeightMap, CliError> {
-    rc_heights::read_with(path, params)?.in_metres(scales).map_err(|cause| CliError::in_file(path, cause))
+    let of_folder = sides_in_folder(path);
+    if of_folder.is_some() && scales != Scales::default() {
+        let message =
+            "the map in a folder of rc surface or rc solve is in metres; omit unit, height_unit and height_scale";
+        return Err(CliError::in_file(path, message));
+    }
+    let map = rc_heights::read_with(path, params)?.in_metres(scales).map_err(|cause| CliError::in_file(path, cause))?;
+    Ok(HeightMap { sides: map.sides.or(of_folder), ..map })
+}
+
+/// The sides (m) of the map in a folder of `rc surface` or `rc solve`, or `None` for any other file.
+fn sides_in_folder(path: &Path) -> Option<[f64; 2]> {
+    let folder = path.parent().filter(|_| path.file_name().is_some_and(|name| name == HEIGHTS_FILE))?;
+    if ![RECORD_FILE, SUMMARY_FILE].iter().any(|name| folder.join(name).is_file()) {
+        return None;
+    }
+    let scene = file::read(&folder.join(SCENE_FILE)).ok()?.surface;
+    scene.cell.map(|cell| [cell, scene.cell_y.unwrap_or(cell)])
 }
 
 /// Refuses a field with `NaN` or an infinite value.

@@ -2,6 +2,7 @@
 //!
 //! They contain sizes, units and titles of columns.
 
+use super::brackets::{in_brackets, is_unit, name_and_unit, unit_of_heights};
 use super::fields::{refused, shown};
 use super::lines::{cell, comment, is_row_of_cells, lines, number, unquoted, words};
 use super::names::Name;
@@ -93,6 +94,10 @@ impl Heading {
     /// `a=1 b=2`.
     fn line(&mut self, line: &str) {
         let line = line.trim_matches(|c: char| c.is_whitespace() || AROUND.contains(&c));
+        if let Some(unit) = unit_of_heights(line) {
+            self.unit.get_or_insert_with(|| unit.to_owned());
+            return;
+        }
         let parts = |separator: &'static str| {
             let parts: Vec<&str> = line.split(separator).collect();
             (parts.len() > 1 && parts.iter().all(|part| part.contains([':', '=']))).then_some(parts)
@@ -166,7 +171,12 @@ impl Heading {
                 Some(unit) => self.of_all = Some(unit),
                 None => self.unit = self.unit.take().or_else(|| Some(plain.to_owned())),
             },
-            Name::Channel => plain.clone_into(&mut self.channel),
+            Name::Channel => {
+                plain.clone_into(&mut self.channel);
+                if let Some(unit) = in_brackets(plain).map(|(_, unit)| unit).filter(|unit| is_unit(unit)) {
+                    self.unit.get_or_insert_with(|| unit.to_owned());
+                }
+            }
             Name::ImageData => self.image(value),
             Name::Metres => self.metres = number(value, true),
             Name::Missing => self.missing.extend(number(plain, true).filter(|mark| mark.is_finite())),
@@ -255,6 +265,12 @@ impl Heading {
         }
     }
 
+    /// The unit that the heights have only because the sides have it.
+    pub(super) fn unit_of_sides_for_heights(&self) -> Option<LengthUnit> {
+        let is_named = self.metres.is_some() || self.unit.is_some() || self.of_all.is_some();
+        if is_named { None } else { self.unit_of_all() }
+    }
+
     /// The unit of lengths that have no other: the one that is given for all, or the only one that is named.
     pub(super) fn unit_of_all(&self) -> Option<LengthUnit> {
         let lengths = self.sides.iter().chain(&self.spacing).chain([&self.scan]);
@@ -275,25 +291,6 @@ fn begins_numbers(row: &str) -> bool {
     let is_field = |rest: usize| rest == 1 && Name::of(first) == Some(Name::Missing);
     let rest = words.count();
     is_number || rest > 0 && !is_field(rest) && is_row_of_cells(row)
-}
-
-/// The name of a field without what is in brackets: an axis, which belongs to the name, or a unit.
-fn name_and_unit(name: &str) -> (String, String) {
-    let (mut whole, mut unit) = (String::new(), String::new());
-    if name.contains("->") {
-        return (name.to_owned(), unit);
-    }
-    for (i, part) in name.split(['[', '(']).enumerate() {
-        let (inside, outside) = if i == 0 { ("", part) } else { part.split_once([']', ')']).unwrap_or((part, "")) };
-        let is_axis = ["x", "y"].contains(&inside.trim().to_ascii_lowercase().as_str());
-        if is_axis {
-            whole.push_str(inside);
-        } else if !inside.trim().is_empty() {
-            inside.trim().clone_into(&mut unit);
-        }
-        whole.push_str(outside);
-    }
-    (whole, unit)
 }
 
 /// The only length of a field.
@@ -367,6 +364,21 @@ mod tests {
         for other in ["Width (px): 2\nHeight (px): 3\n1 2\n", "Width [A]: 2\nHeight [A]: 3\n1 2\n"] {
             assert_eq!(of(other).sides(2, 1), Ok((None, Unit::Unnamed)), "{other}");
         }
+    }
+
+    #[test]
+    fn a_title_of_the_map_names_the_unit_of_its_heights() {
+        for title in ["Height [nm]", "Heights in nm", "z: nm", "Z scale = nm", "# Channel: Topography (nm)"] {
+            let heading = of(&format!("Pixel size: 10 um\n{title}\n1 2\n"));
+            assert_eq!(heading.of_heights(), Ok((Unit::Metre, 1e-9)), "{title}");
+            assert_eq!(heading.unit_of_sides_for_heights(), None);
+        }
+        for title in ["Z [V]", "Channel: Deflection error (mV)", "Data (deg)"] {
+            assert_eq!(of(&format!("{title}\n1 2\n")).of_heights(), Ok((Unit::NotLength, 1.0)), "{title}");
+        }
+        let heading = of("Pixel size: 10 um\nChannel: Height (measured)\n1 2\n");
+        assert_eq!(heading.of_heights(), Ok((Unit::Metre, 1e-6)));
+        assert_eq!(heading.unit_of_sides_for_heights(), Some(LengthUnit::Micrometre));
     }
 
     #[test]

@@ -4,6 +4,7 @@ mod al3d;
 mod archive;
 mod axes;
 mod binary;
+mod brackets;
 mod channel;
 mod cloud;
 mod datx;

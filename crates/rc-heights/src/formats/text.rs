@@ -65,6 +65,7 @@ fn map(text: &str, heading: &Heading, layout: Option<Layout>, marks: &Marks) -> 
     let (mut sides, mut side_unit) = heading.sides(nx, ny)?;
     let (mut height_unit, mut factor) = heading.of_heights()?;
     let mut notes = table.notes;
+    notes.extend(heading.unit_of_sides_for_heights().map(|unit| ReadNote::HeightsLikeSides { unit }));
     if let Some(steps) = table.steps {
         let unit = heading.titles.unit_of_corner().or(heading.unit_of_all());
         let metres = unit.map_or(1.0, LengthUnit::metres);

@@ -81,7 +81,7 @@ impl Titles {
 
     /// The unit in the first title, which is the corner of a table with coordinates at its borders.
     pub(super) fn unit_of_corner(&self) -> Option<LengthUnit> {
-        self.names.first().and_then(|name| unit_of_title(name))
+        self.names.first().and_then(|name| unit_of_title(name).ok().flatten())
     }
 
     /// Whether the first title counts rows.
@@ -95,10 +95,25 @@ impl Titles {
         has("x") && has("y") && self.columns().is_ok_and(|columns| columns.is_some())
     }
 
-    /// Column of the first title that begins with a letter.
-    fn at(&self, letter: &str) -> Option<usize> {
-        let exact = self.names.iter().position(|name| first_word(name) == letter);
-        exact.or_else(|| self.names.iter().position(|name| name.to_lowercase().starts_with(letter)))
+    /// Column of the title that is a letter or a word, or else of the first that begins with it.
+    fn at(&self, word: &str) -> Option<usize> {
+        let place = |is: &dyn Fn(&String) -> bool| self.names.iter().position(is);
+        place(&|name| is_only(name, word))
+            .or_else(|| place(&|name| first_word(name) == word))
+            .or_else(|| place(&|name| name.to_lowercase().starts_with(word)))
+    }
+
+    /// Refuses two titles of the same coordinate, as `x_px` and `x_um`.
+    fn check_twice(&self) -> Result<(), FormatError> {
+        for letter in ["x", "y", "z"] {
+            let same: Vec<&str> =
+                self.names.iter().filter(|name| first_word(name) == letter).map(String::as_str).collect();
+            if same.len() > 1 && !same.iter().any(|name| is_only(name, letter)) {
+                let expected = "one column of each coordinate; remove the others";
+                return Err(refused(Format::Xyz, "titles of columns", &same.join(", "), expected));
+            }
+        }
+        Ok(())
     }
 
     /// The columns of x, y and height. `None` if there are no titles of points.
@@ -121,7 +136,10 @@ impl Titles {
         // Words before the numbers may also be a remark.
         let in_place = x.is_none_or(|x| x == 0) && y.is_none_or(|y| y == 1);
         match (x, y, z) {
-            (Some(x), Some(y), Some(z)) if all > 3 => return found([x, y, z], has_counter),
+            (Some(x), Some(y), Some(z)) if all > 3 => {
+                self.check_twice()?;
+                return found([x, y, z], has_counter);
+            }
             _ if all > 3 => return Ok(None),
             (Some(1), Some(2), None) if has_counter => {
                 return Err(FormatError::profile_in_text("a text of two columns beside a counter"));
@@ -136,11 +154,22 @@ impl Titles {
     }
 
     /// The units of three columns. If only one unit is named, it is that of all three.
-    pub(super) fn units(&self, columns: [usize; 3]) -> [Option<LengthUnit>; 3] {
-        let units = columns.map(|column| self.names.get(column).and_then(|title| unit_of_title(title)));
+    ///
+    /// # Errors
+    /// [`FormatError::Field`] for a unit in brackets that is none of length.
+    pub(super) fn units(&self, columns: [usize; 3]) -> Result<[Option<LengthUnit>; 3], FormatError> {
+        let mut units = [None; 3];
+        for (unit, column) in units.iter_mut().zip(columns) {
+            let Some(title) = self.names.get(column) else { continue };
+            let refused = |found: &str| {
+                let expected = "a unit of length, as in z [um]";
+                refused(Format::Xyz, "unit in a title", &format!("{found} ({title})"), expected)
+            };
+            *unit = unit_of_title(title).map_err(refused)?;
+        }
         let mut named = units.into_iter().flatten();
         let first = named.next();
-        if first.is_some() && named.all(|unit| Some(unit) == first) { [first; 3] } else { units }
+        Ok(if first.is_some() && named.all(|unit| Some(unit) == first) { [first; 3] } else { units })
     }
 }
 
@@ -177,14 +206,31 @@ fn is_count(title: &str) -> bool {
     title == "#" || COUNTS.contains(&first_word(title).as_str())
 }
 
+/// Whether a title is a word, with or without a unit in brackets.
+fn is_only(title: &str, word: &str) -> bool {
+    let name = title.split(['[', '(']).next().unwrap_or_default();
+    name.trim_matches(|c: char| !c.is_alphanumeric()).eq_ignore_ascii_case(word)
+}
+
+/// Words in brackets that are no units.
+const NO_UNITS: [&str; 9] = ["height", "heights", "depth", "x", "y", "z", "row", "column", "raw"];
+
 /// The unit in a title such as `X_(microns)`, `z [nm]`, `y/µm` or `x in mm`.
 ///
-/// It is the last word of a title of two or more words.
-fn unit_of_title(title: &str) -> Option<LengthUnit> {
+/// It is in brackets, or the last word of a title of two or more words.
+///
+/// # Errors
+/// What is in brackets, if it is no unit of length.
+fn unit_of_title(title: &str) -> Result<Option<LengthUnit>, &str> {
+    if let Some((_, inside)) = title.rsplit_once(['[', '(']) {
+        let inside = inside.trim_end_matches(|c: char| "]) _".contains(c)).trim();
+        if !inside.is_empty() && !NO_UNITS.contains(&inside.to_lowercase().as_str()) {
+            return unit_of(inside).map(Some).ok_or(inside);
+        }
+    }
     let is_letter = |c: char| c.is_alphabetic() || "\u{b5}\u{3bc}~".contains(c);
     let words: Vec<&str> = title.split(|c: char| !is_letter(c)).filter(|word| !word.is_empty()).collect();
-    let (last, before) = words.split_last()?;
-    if before.is_empty() { None } else { unit_of(last) }
+    Ok(words.split_last().filter(|(_, before)| !before.is_empty()).and_then(|(last, _)| unit_of(last)))
 }
 
 #[cfg(test)]
@@ -193,7 +239,7 @@ mod tests {
 
     fn units(titles: &str) -> [Option<LengthUnit>; 3] {
         let titles = Titles::above(Some((1, titles)), "0 0 1").expect("titles");
-        titles.units([0, 1, 2])
+        titles.units([0, 1, 2]).expect("units")
     }
 
     #[test]
@@ -212,6 +258,15 @@ mod tests {
         ];
         for (titles, expected) in cases {
             assert_eq!(units(titles), expected, "{titles}");
+        }
+        for (titles, expected) in [
+            ("x [um],y [um],z [V]", "'V (z [V])'"),
+            ("x,y,z [10 nm]", "10 nm"),
+            ("x (px),y (px),z (um)", "'px (x (px))'"),
+        ] {
+            let titles = Titles::above(Some((1, titles)), "0 0 1").expect("titles");
+            let error = titles.units([0, 1, 2]).expect_err("no length").to_string();
+            assert!(error.contains(expected), "{error}");
         }
     }
 
@@ -237,5 +292,8 @@ mod tests {
         assert_eq!(columns("x,y,z,intensity"), of([0, 1, 2], 4, false));
         assert_eq!(columns("a,b,c,d"), Ok(None));
         assert_eq!(columns("Y,X,Height"), of([1, 0, 2], 3, false));
+        assert_eq!(columns("x,y,z,x velocity"), of([0, 1, 2], 4, false));
+        let error = columns("x_px,y_px,x_um,y_um,z_um").expect_err("two of x").to_string();
+        assert!(error.contains("x_px, x_um"), "{error}");
     }
 }

@@ -97,7 +97,7 @@ fn parse(bytes: &[u8], missing: &[f64]) -> Result<HeightMap, FormatError> {
 
 /// The map in the units that the lines before the numbers name.
 fn in_units(mut map: HeightMap, heading: &Heading, columns: Columns) -> Result<HeightMap, FormatError> {
-    let units = heading.titles.units(columns.xyz);
+    let units = heading.titles.units(columns.xyz)?;
     // If only one of them has a unit, it applies to both.
     let one = units[0].or(units[1]).or(heading.unit_of_all());
     if let (Some(one), Some(sides)) = (one, &mut map.sides) {
