@@ -211,7 +211,8 @@ fn shapes_have_no_spikes() {
 #[test]
 fn worn_and_stepped_surfaces_have_no_spikes() {
     // Edges and kinks of such surfaces leave single points far from their neighbours, but not only single points.
-    let shapes: [(&str, fn(f64) -> f64); 4] =
+    type Shape = fn(f64) -> f64;
+    let shapes: [(&str, Shape); 4] =
         [("terraces", |z| z.round()), ("worn", |z| z.min(0.0)), ("lognormal", f64::exp), ("cubed", |z| z * z * z)];
     for (name, shape) in shapes {
         let mut alarms = 0;

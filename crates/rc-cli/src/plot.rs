@@ -46,7 +46,7 @@ pub(crate) struct PlotArgs {
 pub(crate) fn run(args: &PlotArgs) -> Result<(), CliError> {
     if is_scene(&args.folder) {
         let target = args.out.as_deref().unwrap_or_else(|| folder_of(&args.folder));
-        let names = draw_surface(&args.folder, target)?;
+        let names = draw_surface(&args.folder, target, args.quiet)?;
         return if args.quiet { Ok(()) } else { terminal::print_names(target, &names) };
     }
     let result = ResultFolder::read_finite(&args.folder)?;

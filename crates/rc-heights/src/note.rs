@@ -17,6 +17,14 @@ pub enum ReadNote {
     /// No unit of the sides is named, so they were taken as metres.
     #[error("the file names no unit of its sides, so they are taken as metres; --unit says otherwise")]
     SidesAssumedMetres,
+    /// Several arrays without a unit may be the heights, and the first was taken.
+    #[error("'{name}', the first of {of} arrays without a unit, has the heights; --channel names another")]
+    FirstOfSeveral {
+        /// Name of the array.
+        name: String,
+        /// Number of arrays that may be the heights.
+        of: usize,
+    },
     /// Only the sides have a unit, so that it was taken for the heights too.
     #[error(
         "the file names a unit of its sides only, so the heights are in it too ({unit}); if not, name theirs in the file: \
@@ -64,7 +72,8 @@ impl ReadNote {
     /// Whether the note is an assumption that the user should confirm.
     #[must_use]
     pub fn is_assumption(&self) -> bool {
-        matches!(self, Self::HeightsAssumedMetres | Self::SidesAssumedMetres | Self::HeightsLikeSides { .. })
+        let is_of_heights = matches!(self, Self::HeightsAssumedMetres | Self::HeightsLikeSides { .. });
+        is_of_heights || matches!(self, Self::SidesAssumedMetres | Self::FirstOfSeveral { .. })
     }
 }
 

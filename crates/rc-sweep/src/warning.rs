@@ -47,8 +47,8 @@ pub enum WarningCode {
 impl Warning {
     /// A warning with this code and text.
     #[must_use]
-    pub fn new(code: WarningCode, text: impl ToString) -> Self {
-        Self { code, text: text.to_string() }
+    pub fn new(code: WarningCode, text: impl Into<String>) -> Self {
+        Self { code, text: text.into() }
     }
 }
 

@@ -8,3 +8,6 @@ pub(crate) const RECORD_FILE: &str = "surface.json";
 
 /// The scene.
 pub(crate) const SCENE_FILE: &str = "scene.toml";
+
+/// File with the summary of a solve.
+pub(crate) const SUMMARY_FILE: &str = "summary.json";

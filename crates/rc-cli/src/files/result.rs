@@ -5,14 +5,12 @@ use std::path::Path;
 use rc_core::{Field, Grid, PeriodicCell};
 
 use crate::error::CliError;
+use crate::files::names::SUMMARY_FILE;
 use crate::scene::file;
 use crate::scene::heights::check_finite;
 use crate::scene::resolve;
 use rc_heights::npy;
 use rc_sweep::Summary;
-
-/// File with the summary of a solve.
-pub(crate) const SUMMARY_FILE: &str = "summary.json";
 
 /// File of the overlap that plastic flow has removed, with a hardness.
 pub const PLASTIC_GAP_FILE: &str = "plastic_gap.npy";

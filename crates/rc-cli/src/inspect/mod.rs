@@ -20,10 +20,10 @@ use serde::Serialize;
 use self::args::InspectArgs;
 use self::record::{ChannelRow, SurfaceRecord};
 use crate::error::CliError;
-use crate::files::names::SCENE_FILE;
-use crate::files::result::{ResultFolder, SUMMARY_FILE};
+use crate::files::names::{SCENE_FILE, SUMMARY_FILE};
+use crate::files::result::ResultFolder;
 use crate::scene::heights::CellOfMap;
-use crate::scene::keys::{Scene, SurfaceKeys};
+use crate::scene::keys::{RunKeys, Scene, SurfaceKeys};
 use crate::scene::surface::LoadedSurface;
 use crate::scene::values::GridSpec;
 use crate::scene::{file, heights, resolve};
@@ -165,15 +165,14 @@ impl Inspected {
         let default = file::example().surface.cell;
         let grid = map.heights.grid();
         let CellOfMap { cell, cell_y, mut assumed } = CellOfMap::of(path, &map, given)?;
-        let (cell, cell_y) = match cell {
-            Some(side) => (side, cell_y),
-            None => {
-                let side = default.unwrap_or(1.0);
-                assumed.push(assumed_side(side));
-                let of_side = CellOfMap::default().of_points(Some(side), given[1], [grid.nx(), grid.ny()]);
-                assumed.extend(of_side.assumed);
-                (side, of_side.cell_y)
-            }
+        let (cell, cell_y) = if let Some(side) = cell {
+            (side, cell_y)
+        } else {
+            let side = default.unwrap_or(1.0);
+            assumed.push(assumed_side(side));
+            let of_side = CellOfMap::default().of_points(Some(side), given[1], [grid.nx(), grid.ny()]);
+            assumed.extend(of_side.assumed);
+            (side, of_side.cell_y)
         };
         let mut warnings = warnings::surface::of_map(&map);
         warnings.extend(warnings::surface::assumed(&assumed));
@@ -187,7 +186,7 @@ impl Inspected {
             SurfaceRecord::of_measured(&heights, cell.side())
         };
         warnings.extend(record.shape().warnings());
-        Ok(Self { heights, record: SurfaceRecord { warnings, notes, ..record } })
+        Ok(Self { heights, record: SurfaceRecord { notes, warnings, ..record } })
     }
 }
 
@@ -204,15 +203,17 @@ pub(crate) fn of_surface(path: &Path, over: Scene) -> Result<Inspected, CliError
     let heights = surface.heights()?.into_owned();
     let record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments());
     let warnings = [surface.warnings, record.shape().warnings()].concat();
-    Ok(Inspected { heights, record: SurfaceRecord { warnings, notes: surface.notes, ..record } })
+    Ok(Inspected { heights, record: SurfaceRecord { notes: surface.notes, warnings, ..record } })
 }
 
-/// Writes the pictures of the surface of a scene, and returns their names.
+/// Writes the pictures of the surface of a scene, and returns their names. Its warnings are told unless
+/// `quiet`.
 ///
 /// # Errors
 /// [`CliError`].
-pub(crate) fn draw_surface(path: &Path, folder: &Path) -> Result<Vec<String>, CliError> {
+pub(crate) fn draw_surface(path: &Path, folder: &Path, quiet: bool) -> Result<Vec<String>, CliError> {
     let Inspected { heights, record } = of_surface(path, Scene::default())?;
+    tell(&record.warnings, &RunKeys { quiet, ..RunKeys::default() });
     files::check_folder(folder)?;
     Ok(pictures::write(folder, &heights, &record)?)
 }

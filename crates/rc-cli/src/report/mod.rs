@@ -23,7 +23,8 @@ use std::path::Path;
 
 use self::args::ReportArgs;
 use crate::error::CliError;
-use crate::files::result::{SUMMARY_FILE, no_folder};
+use crate::files::names::SUMMARY_FILE;
+use crate::files::result::no_folder;
 use crate::inspect::{folder_of, is_scene};
 use crate::terminal;
 use rc_sweep::{TABLE_FILE, files, settings_in};
@@ -32,9 +33,9 @@ use rc_sweep::{TABLE_FILE, files, settings_in};
 const PAGE_FILE: &str = "report.html";
 
 /// The page of what is in `folder`.
-fn html(folder: &Path) -> Result<String, CliError> {
+fn html(folder: &Path, quiet: bool) -> Result<String, CliError> {
     if is_scene(folder) && !folder.join(TABLE_FILE).exists() {
-        return Ok(document::html(&surface::page(folder)?));
+        return Ok(document::html(&surface::page(folder, quiet)?));
     }
     if !folder.is_dir() {
         return Err(CliError::in_file(folder, no_folder(folder, "a solve or a sweep")));
@@ -65,7 +66,7 @@ pub(crate) fn run(args: &ReportArgs) -> Result<(), CliError> {
     if target.is_dir() {
         return Err(CliError::in_file(&target, format_args!("is a folder; give --out FILE, for example {PAGE_FILE}")));
     }
-    let page = html(&args.folder)?;
+    let page = html(&args.folder, args.quiet)?;
     files::check_folder(target.parent().unwrap_or(Path::new("")))?;
     files::write_file(&target, |path| files::write_synced(path, page.as_bytes()))?;
     if args.quiet { Ok(()) } else { terminal::print(&format!("{}\n", target.display())) }

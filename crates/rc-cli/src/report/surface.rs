@@ -13,7 +13,8 @@ use crate::error::CliError;
 use crate::inspect::record::SurfaceRecord;
 use crate::inspect::text::{parameter_lines, surface_lines};
 use crate::inspect::{Inspected, of_surface};
-use crate::scene::keys::Scene;
+use crate::scene::keys::{RunKeys, Scene};
+use crate::warnings::shown::tell;
 use rc_sweep::to_json;
 
 /// The data of a page of a surface, without those of all pages.
@@ -36,12 +37,13 @@ pub(super) struct SurfaceBody {
     parameters: Vec<(&'static str, String)>,
 }
 
-/// The page of the scene at `path`, or of the folder with one.
+/// The page of the scene at `path`, or of the folder with one. Its warnings are told unless `quiet`.
 ///
 /// # Errors
 /// [`CliError::Input`].
-pub(super) fn page(path: &Path) -> Result<Page<SurfaceBody>, CliError> {
+pub(super) fn page(path: &Path, quiet: bool) -> Result<Page<SurfaceBody>, CliError> {
     let Inspected { heights, record } = of_surface(path, Scene::default())?;
+    tell(&record.warnings, &RunKeys { quiet, ..RunKeys::default() });
     let lowest = heights.min();
     let pixels = pixel_means(heights.grid(), |i| (heights.values()[i] - lowest) * record.cell);
     let note = if pixels.grid() == heights.grid() {

@@ -8,8 +8,7 @@ use rc_heights::{Format, HeightMap, Layout, ReadNote, ReadParams, SAME_LENGTH, S
 use super::as_read::AsRead;
 use super::file;
 use crate::error::CliError;
-use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SCENE_FILE};
-use crate::files::result::SUMMARY_FILE;
+use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SCENE_FILE, SUMMARY_FILE};
 use rc_core::quantity::engineering;
 
 /// Reads a height map of any format of `rc-heights`, in metres.

@@ -9,7 +9,9 @@ use crate::terminal;
 /// Prints warnings, one line each, unless `run` is quiet.
 pub(crate) fn tell(warnings: &[Warning], run: &RunKeys) {
     if !run.quiet {
-        warnings.iter().for_each(|warning| terminal::tell(&format!("warning: {}", warning.text)));
+        for warning in warnings {
+            terminal::tell(&format!("warning: {}", warning.text));
+        }
     }
 }
 

@@ -16,7 +16,9 @@ fn place() -> Place {
     put("um.npy", &heights(1e6));
     put("steep.npy", &heights(30.0));
     let mut spiky = heights(1.0);
-    [300, 1500, 2222].iter().for_each(|i| spiky[*i] += 5e-5);
+    for i in [300, 1500, 2222] {
+        spiky[i] += 5e-5;
+    }
     put("spiky.npy", &spiky);
     let mut marked = heights(1.0);
     marked[77] = -9999.0;
@@ -182,7 +184,7 @@ fn the_files_of_data_formats_have_these_codes() {
             code => panic!("{name}: {code:?}"),
         };
         let line = if line.is_empty() { "none".to_owned() } else { line };
-        table += &format!("{name}: {line}\n");
+        table = format!("{table}{name}: {line}\n");
     }
     assert_eq!(table, CODES_OF_FORMATS, "{table}");
 }

@@ -111,6 +111,13 @@ fn map(text: &str, header: &Header, marks: &Marks) -> Result<HeightMap, FormatEr
         let expected = "the number of heights that are there; the file is truncated";
         return Err(refused(Format::EsriGrid, "ncols x nrows", &found, expected));
     }
+    let counts = data_lines(text, header.first).map(|(_, row)| words(row).0.filter(|word| !word.is_empty()).count());
+    let lines: Vec<usize> = counts.collect();
+    let (nx, ny) = (grid.nx(), grid.ny());
+    if nx != ny && lines.len() == nx && lines.iter().all(|n| *n == ny) {
+        let found = format!("{nx} x {ny}, for {nx} lines of {ny} heights");
+        return Err(refused(Format::EsriGrid, "ncols x nrows", &found, "heights per line x lines; exchange them"));
+    }
     marks.erase(&mut values);
     flip(&mut values, grid, [false, true]);
     let sides = match header.spacing {
@@ -187,6 +194,7 @@ mod tests {
             ("ncols 3\nnrows 2\ncellsize 1\n1 2 3 4 5\n", "3 x 2, for 5 heights"),
             ("ncols 3\nnrows 2\ncellsize 1\n1 2 3 4 5 6 7\n", "3 x 2, for 7 heights"),
             ("ncols 3\nnrows 2\n", "for 0 heights"),
+            ("ncols 3\nnrows 2\ncellsize 1\n1 2\n3 4\n5 6\n", "for 3 lines of 2 heights"),
             ("ncols 3\nnrows two\n1 2 3\n", "nrows is 'two'"),
             ("ncols 3\ncellsize 1\n1 2 3\n", "nrows is missing"),
             ("ncols 3\nnrows 1\ncellsize 0\n1 2 3\n", "cellsize is '0'"),

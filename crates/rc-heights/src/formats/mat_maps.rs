@@ -104,7 +104,7 @@ impl File<'_> {
         points::check(n as u64, self.max_bytes)?;
         let [x, y, z] = places.map(|i| self.arrays[i].numbers(0, n, self.max_bytes));
         let points = x?.into_iter().zip(y?).zip(z?).map(|((x, y), z)| [x, y, z]);
-        let mut map = points::map_of(points.collect(), [n as u64, 3])?;
+        let mut map = points::map_of(&points.collect::<Vec<_>>(), [n as u64, 3])?;
         Scalings::of(&Entries::new(), &self.entries()).apply(&mut map);
         Ok(map)
     }

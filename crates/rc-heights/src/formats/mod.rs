@@ -80,7 +80,7 @@ pub use points::of_points;
 
 use self::channel::{Channels, chosen, named, only};
 use self::opened::Opened;
-use crate::{FormatError, HeightMap, ReadError, ReadNote};
+use crate::{FormatError, HeightMap, ReadError, ReadNote, Unit};
 
 /// The format of the file at `path`. For a gzip file, it is the format of the contents.
 ///
@@ -183,12 +183,22 @@ pub fn parse(bytes: &[u8], format: Format) -> Result<HeightMap, FormatError> {
 /// # Errors
 /// [`FormatError`] when the bytes are not valid, as for [`read_with`].
 pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<HeightMap, FormatError> {
-    let channel = chosen(named(in_bytes(bytes, format, params)?), params.channel.as_deref())?;
+    let channels = named(in_bytes(bytes, format, params)?);
+    let of_heights = channels.iter().filter(|channel| channel.is_height).count();
+    let is_first_of_several = params.channel.is_none() && of_heights > 1;
+    let channel = chosen(channels, params.channel.as_deref())?;
+    let name = channel.name.clone();
     // Readers of texts compare the marks of the user with numbers as they are written, before any unit.
     let is_text = matches!(format, Format::Csv | Format::EsriGrid | Format::Xyz | Format::Zygo)
         || format == Format::Nanoscope && is_text(bytes);
     let missing: &[f64] = if is_text { &[] } else { &params.missing };
     let map = checked((channel.read)()?, missing).map(|map| order::bottom_first(map, bytes, format))?;
+    // Channels with a unit of length are heights, or at least deviations of heights.
+    let map = if is_first_of_several && matches!(map.height_unit, Unit::Unnamed | Unit::Array) {
+        map.with_note(ReadNote::FirstOfSeveral { name: fields::shown(&name), of: of_heights })
+    } else {
+        map
+    };
     let is_unused = !params.missing.is_empty() && map.missing() == 0;
     Ok(if is_unused { map.with_note(ReadNote::NoMark) } else { map })
 }

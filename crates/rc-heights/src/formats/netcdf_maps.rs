@@ -179,7 +179,7 @@ fn of_paths(arrays: &Arrays, paths: &[String; 3], max_bytes: u64) -> Result<Heig
     let places = x_values?.into_iter().zip(y_values?).zip(z_values?).map(|((x, y), z)| [x, y, z]);
     let places: Vec<[f64; 3]> = places.collect();
     let n = places.len();
-    let mut map = points::map_of(places, [n as u64, 3])?;
+    let mut map = points::map_of(&places, [n as u64, 3])?;
     let units = [netcdf_axes::unit_name(arrays.variable(x)?), netcdf_axes::unit_name(arrays.variable(y)?)];
     if let Some(sides) = map.sides {
         (map.sides, map.side_unit) = with_units(arrays.format, sides, &units)?;

@@ -199,7 +199,7 @@ impl<R: Read> Array<R> {
         points::check(n as u64, max_bytes)?;
         let read = records::points(&record, &mut self.file, n);
         let points = read.map_err(|cause| self.failed(cause, record.size as u64 * n as u64))?;
-        points::map_of(points, [n as u64, 3])
+        points::map_of(&points, [n as u64, 3])
     }
 }
 

@@ -58,21 +58,21 @@ pub(super) fn map(values: &[f64], kind: Kind, shape: [u64; 2]) -> Result<HeightM
         Kind::Columns => [values[i], values[n + i], values[2 * n + i]],
         _ => [values[3 * i], values[3 * i + 1], values[3 * i + 2]],
     };
-    map_of((0..n).map(point).collect(), shape)
+    map_of(&(0..n).map(point).collect::<Vec<_>>(), shape)
 }
 
 /// The map of points that were read from an array of `rows` x `columns` numbers.
 ///
 /// # Errors
 /// Those of [`map`].
-pub(super) fn map_of(points: Vec<[f64; 3]>, [rows, columns]: [u64; 2]) -> Result<HeightMap, FormatError> {
+pub(super) fn map_of(points: &[[f64; 3]], [rows, columns]: [u64; 2]) -> Result<HeightMap, FormatError> {
     let refused = |problem| FormatError::Points { rows, columns, problem: Box::new(problem) };
     let has_no_place = |[x, y, _]: &[f64; 3]| !(x.is_finite() && y.is_finite());
     if let Some(i) = points.iter().position(has_no_place) {
         let message = format!("x or y of point {i} (from 0) is not finite");
         return Err(refused(FormatError::Irregular(message)));
     }
-    on_grid(&points).map_err(refused)
+    on_grid(points).map_err(refused)
 }
 
 /// The map of points x, y and height of a program, which may have any order. Points may be missing.
