@@ -208,6 +208,19 @@ def test_spacings_are_equal_without_a_size_for_y_and_this_is_said(heights):
         assert rc.solve(heights, cell=0.01, **CONTACT).warnings == []
 
 
+def test_prepare_warns_of_what_it_treats(heights):
+    spiky = heights.copy()
+    spiky[5, 7] += 30 * heights.std()
+    with pytest.warns(rc.InputWarning, match="stands far from all neighbours"):
+        rc.prepare(spiky, cell=0.01, level="mean")
+    holes = heights.copy()
+    holes[10:30, 10:30] = np.nan
+    with pytest.warns(rc.InputWarning, match="were missing and filled"):
+        rc.prepare(holes, cell=0.01, fill="laplace")
+    with pytest.raises(ValueError, match="were missing and filled.*strict"):
+        rc.prepare(holes, cell=0.01, fill="laplace", strict=True)
+
+
 def test_keywords_for_files_do_not_apply_to_arrays(heights):
     for keys in ({"missing": -9999.0}, {"mask": "ignore"}):
         name = next(iter(keys))

@@ -25,6 +25,16 @@ pub enum ReadNote {
         /// Number of arrays that may be the heights.
         of: usize,
     },
+    /// Other lines divide the rows into blocks of equal sizes.
+    #[error(
+        "the text has {blocks} blocks of {rows} rows, divided by other lines, which make one map; if not, give one block"
+    )]
+    Blocks {
+        /// Number of blocks.
+        blocks: usize,
+        /// Number of rows of each.
+        rows: usize,
+    },
     /// Only the sides have a unit, so that it was taken for the heights too.
     #[error(
         "the file names a unit of its sides only, so the heights are in it too ({unit}); if not, name theirs in the file: \
@@ -73,7 +83,7 @@ impl ReadNote {
     #[must_use]
     pub fn is_assumption(&self) -> bool {
         let is_of_heights = matches!(self, Self::HeightsAssumedMetres | Self::HeightsLikeSides { .. });
-        is_of_heights || matches!(self, Self::SidesAssumedMetres | Self::FirstOfSeveral { .. })
+        is_of_heights || matches!(self, Self::SidesAssumedMetres | Self::FirstOfSeveral { .. } | Self::Blocks { .. })
     }
 }
 

@@ -8,7 +8,7 @@ use rc_heights::{BorderStep, HeightMap};
 use rc_sweep::Warning;
 use rc_sweep::WarningCode::{Assumed, Border, Columns, Counter as CounterCode, Marks, Missing, Slope, Spikes, Units};
 
-use crate::files::names::{HEIGHTS_FILE, RECORD_FILE};
+use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SUMMARY_FILE};
 
 /// rms slope above which a surface is hardly a rough one.
 ///
@@ -148,7 +148,7 @@ pub(crate) fn filled(missing: usize, all: usize) -> Option<Warning> {
     (part > FEW_FILLED).then(|| Warning::new(Missing, text()))
 }
 
-/// The doubt about filled points in the record of a folder of `rc surface`, when `path` is the map in it.
+/// The doubt about filled points in the record of a folder of `rc surface` or `rc solve`, when `path` is the map in it.
 ///
 /// The map itself does not show which points were filled.
 pub(crate) fn of_record(path: &Path) -> Option<Warning> {
@@ -157,9 +157,12 @@ pub(crate) fn of_record(path: &Path) -> Option<Warning> {
         warnings: Vec<Warning>,
     }
     let folder = path.parent().filter(|_| path.file_name().is_some_and(|name| name == HEIGHTS_FILE))?;
-    let text = std::fs::read_to_string(folder.join(RECORD_FILE)).ok()?;
-    let Record { warnings } = serde_json::from_str(&text).ok()?;
-    warnings.into_iter().find(|warning| warning.code == Missing)
+    let of_file = |name: &str| {
+        let text = std::fs::read_to_string(folder.join(name)).ok()?;
+        let Record { warnings } = serde_json::from_str(&text).ok()?;
+        warnings.into_iter().find(|warning| warning.code == Missing)
+    };
+    [RECORD_FILE, SUMMARY_FILE].into_iter().find_map(of_file)
 }
 
 /// A doubt about a map that is solved as if it repeated itself.

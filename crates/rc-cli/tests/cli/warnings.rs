@@ -248,3 +248,33 @@ tifffile-park.tif: refused\n\
 tifffile-white-levels.tif: assumed\n\
 tifffile-white.tif: assumed\n\
 zipfile-folder.x3p: slope\n";
+
+#[test]
+fn the_map_of_a_folder_is_in_metres_and_has_the_size_of_its_cell() {
+    let place = place();
+    let ready =
+        ["surface", "--heights", "map.npy", "--cell", "1e-3", "--periodic", "mirror", "--out", "ready", "--quiet"];
+    assert_solved(&place.run(&ready));
+    let load = ["--e-star", "1e9", "--pressure", "1e6", "--quiet"];
+    assert_solved(&place.run(&[&["solve", "ready", "--out", "result"], &load[..]].concat()));
+    for folder in ["ready", "result"] {
+        for (flag, value, expected) in [
+            ("--unit", "um", "is in metres"),
+            ("--height-scale", "1e-6", "is in metres"),
+            ("--cell", "1e-3", "2 mm wide"),
+        ] {
+            for command in ["solve", "surface", "inspect"] {
+                if (folder, command) == ("result", "inspect") {
+                    continue;
+                }
+                let material: &[&str] = if command == "solve" { &load[..4] } else { &[] };
+                assert_refused(&place.run(&[&[command, folder, flag, value], material].concat()), expected);
+            }
+        }
+        let map = format!("{folder}/heights.npy");
+        let output = place.run(&["inspect", &map, "--json"]);
+        assert_solved(&output);
+        let record: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert_eq!((&record["cell"], codes(&record).len()), (&serde_json::json!(2e-3), 0), "{record}");
+    }
+}

@@ -188,7 +188,11 @@ impl<R: Read> Array<R> {
             DType::Plain(plain) if plain.to_string() == "<f8" => doubles(&mut self.file, n),
             _ => to_f64(NpyFile::with_header(self.header.clone(), &mut self.file), n),
         };
-        read.map_err(|cause| self.failed(cause, size * n as u64))
+        let values = read.map_err(|cause| self.failed(cause, size * n as u64))?;
+        if self.file.read(&mut [0]).map_err(unreadable)? > 0 {
+            return Err(header("length", "longer than its array", "that of one array; the file is damaged"));
+        }
+        Ok(values)
     }
 
     /// The map of records.
@@ -316,7 +320,7 @@ mod tests {
     #[test]
     fn what_is_not_real_or_cut_short_is_refused() {
         let dir = tempfile::tempdir().expect("a temporary folder");
-        for (dtype, bytes) in [("<c16", 96), ("|b1", 6), ("<U4", 96), ("<f8", 47), ("<M8[s]", 48)] {
+        for (dtype, bytes) in [("<c16", 96), ("|b1", 6), ("<U4", 96), ("<f8", 47), ("<f8", 49), ("<M8[s]", 48)] {
             let error = read(&write_raw(dir.path(), dtype, false, &vec![0; bytes])).expect_err(dtype);
             assert!(error.to_string().contains("array.npy: "), "{dtype}: {error}");
         }

@@ -25,6 +25,9 @@ pub(super) struct Table {
     has_empty_corner: bool,
 }
 
+/// Fewest rows of a block of lines that may be a map.
+const FEWEST_ROWS: usize = 3;
+
 /// Which fields at the ends of rows are empty.
 #[derive(Clone, Copy)]
 struct Empty {
@@ -44,8 +47,11 @@ impl Table {
         // If the numbers of points are known, lines may end anywhere.
         let wraps = heading.counts.iter().all(Option::is_some);
         let mut ragged = None;
+        let (mut last, mut gaps) = (None, 0);
         for (line, row) in data_lines(text, heading.first) {
             let before = table.values.len();
+            gaps += usize::from(last.is_some_and(|last| line > last + 1));
+            last = Some(line);
             let empty = table.read(line, row)?;
             let found = table.values.len() - before;
             match table.size {
@@ -75,6 +81,11 @@ impl Table {
             table.values.truncate(table.size[0] * table.size[1]);
         }
         table.without_outer_separators(always);
+        let (rows, blocks) = (table.size[1], gaps + 1);
+        // Blank lines after every line, or before empty rows at the end, divide nothing.
+        if gaps > 0 && !wraps && rows >= FEWEST_ROWS * blocks && rows.is_multiple_of(blocks) {
+            table.notes.push(ReadNote::Blocks { blocks, rows: rows / blocks });
+        }
         Ok(table)
     }
 

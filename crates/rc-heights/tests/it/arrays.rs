@@ -77,7 +77,8 @@ fn points_off_a_grid_and_profiles_are_refused_and_the_user_may_call_them_a_map()
         ("(450, 4)", None),
         ("(8, 3)", None),
     ] {
-        let file = npy(shape, "'<f8'", &values);
+        let values = if shape == "(8, 3)" { &values[..8 * 24] } else { &values };
+        let file = npy(shape, "'<f8'", values);
         let read = parse(&file, Format::Npy);
         match expected {
             None => assert!(read.is_ok(), "{shape}"),

@@ -303,3 +303,18 @@ fn every_kind_of_profile_is_called_a_profile() {
         assert!(error.contains("profile") && !error.contains("matrix") && !error.contains('\n'), "{text}: {error}");
     }
 }
+
+#[test]
+fn two_maps_in_one_text_are_doubted_and_blank_lines_are_not() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let path = dir.path().join("map.txt");
+    let notes = |text: String| {
+        std::fs::write(&path, text).expect("a file");
+        read(&path).expect("a map").notes.into_iter().filter(ReadNote::is_assumption).collect::<Vec<_>>()
+    };
+    let one = plain(" ");
+    assert_eq!(notes(one.clone() + "\n" + &one), [ReadNote::Blocks { blocks: 2, rows: NY }]);
+    assert_eq!(notes(one.clone() + "# frame 2\n" + &one), [ReadNote::Blocks { blocks: 2, rows: NY }]);
+    assert_eq!(notes(one.replace('\n', "\n\n")), []);
+    assert_eq!(notes("# map\n\n".to_owned() + &one + "\n\n"), []);
+}
