@@ -340,8 +340,8 @@ def prepare(
         "--repeat": repeat,
     }
     words = [word for flag, value in plain(flags).items() for word in (flag, str(value))]
-    treated, sides_after, doubts = _core.treat(array, sides, words)
-    tell([of_keywords(text) for text in doubts], strict)
+    treated, sides_after, found = _core.treat(array, sides, words)
+    tell([of_keywords(text) for text in found], strict)
     return of_parts(treated, pair(sides_after))
 
 
