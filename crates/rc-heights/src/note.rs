@@ -82,8 +82,8 @@ impl ReadNote {
     /// Whether the note is an assumption that the user should confirm.
     #[must_use]
     pub fn is_assumption(&self) -> bool {
-        let is_of_heights = matches!(self, Self::HeightsAssumedMetres | Self::HeightsLikeSides { .. });
-        is_of_heights || matches!(self, Self::SidesAssumedMetres | Self::FirstOfSeveral { .. } | Self::Blocks { .. })
+        let is_of_metres = matches!(self, Self::HeightsAssumedMetres | Self::SidesAssumedMetres);
+        is_of_metres || matches!(self, Self::FirstOfSeveral { .. } | Self::Blocks { .. })
     }
 }
 

@@ -132,10 +132,13 @@ impl Scalings {
     /// What the attributes of an array say (`own`), and what stands around it (`others`).
     ///
     /// A unit without further words is that of the heights if it is the array's own, and otherwise that of all lengths.
+    /// A unit that is called that of heights comes first.
     pub(super) fn of(own: &Entries, others: &Entries) -> Self {
         let mut found = Self::default();
-        for (is_own, (name, value)) in own.iter().map(|e| (true, e)).chain(others.iter().map(|e| (false, e))) {
-            let name = Name::of(name);
+        let entries = own.iter().map(|e| (true, e)).chain(others.iter().map(|e| (false, e)));
+        let mut named: Vec<_> = entries.map(|(is_own, (name, value))| (is_own, Name::of(name), value)).collect();
+        named.sort_by_key(|(is_own, name, _)| (!is_own, name.of_unit() == Some("")));
+        for (is_own, name, value) in named {
             match value {
                 Value::Text(text) if name.of_unit().is_some() => {
                     found.unit(name.of_unit().unwrap_or_default(), text, is_own);
@@ -301,6 +304,8 @@ mod tests {
         assert_eq!(scalings(&[], &entries).sides(grid).map(|(_, unit)| unit), Some(Unit::Metre));
         let scaled = scalings(&[("z_scale", number(2.0)), ("z_unit", text("um"))], &[]);
         assert_eq!(scaled.heights(), (Unit::Metre, 2e-6));
+        let both = scalings(&[], &[("unit", text("um")), ("z_unit", text("nm"))]);
+        assert_eq!(both.heights(), (Unit::Metre, 1e-9), "the unit of heights, in any order");
         assert_eq!(scalings(&[("unit", text("V"))], &[]).heights(), (Unit::NotLength, 1.0));
     }
 

@@ -1,7 +1,7 @@
 //! Grayscale TIFF of 16 bits or more: integers and floats.
 //!
-//! Each image is a channel, with rows from top to bottom. Levels of integers are inverted where white is zero. Floats
-//! are numbers rather than levels, so they are read as stored. Points with the value that GDAL marks are missing.
+//! Each image is a channel, with rows from top to bottom. Numbers are read as stored, also where white is
+//! zero. Points with the value that GDAL marks are missing.
 
 use std::borrow::Cow;
 use std::io::Cursor;
@@ -94,7 +94,7 @@ fn is_of_heights(image: &mut Image<'_>) -> bool {
 }
 
 fn read(bytes: &[u8], page: usize, max_bytes: u64) -> Result<HeightMap, FormatError> {
-    let stored = tiff_ifd::floats_as_stored(bytes);
+    let stored = tiff_ifd::as_stored(bytes);
     let mut image = opened(&stored)?;
     image.seek_to_image(page).map_err(|cause| invalid(&cause))?;
     let (width, height) = image.dimensions().map_err(|cause| invalid(&cause))?;

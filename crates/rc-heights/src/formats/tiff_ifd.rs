@@ -6,8 +6,6 @@ use super::endian::Endian;
 
 /// Tag of the meaning of levels, where 0 means that white is zero.
 const PHOTOMETRIC: u16 = 262;
-/// Tag of the type of numbers, where 1 means unsigned integers.
-const SAMPLE_FORMAT: u16 = 339;
 
 /// Type of values that are texts.
 const TEXT: u16 = 2;
@@ -23,11 +21,11 @@ struct Directories<'a> {
     is_big: bool,
 }
 
-/// The file, in which white is zero only where levels are unsigned integers.
+/// The file, in which no white is zero.
 ///
-/// Decoders invert levels of images whose white is zero. For floats they subtract from 1, which loses digits and has no
-/// meaning for heights.
-pub(super) fn floats_as_stored(bytes: &[u8]) -> Cow<'_, [u8]> {
+/// Decoders invert levels of images whose white is zero. That is how a picture is shown, and has no meaning for heights,
+/// which are the numbers of the file.
+pub(super) fn as_stored(bytes: &[u8]) -> Cow<'_, [u8]> {
     let places = Directories::of(bytes).map(|directories| directories.inverted()).unwrap_or_default();
     if places.is_empty() {
         return Cow::Borrowed(bytes);
@@ -71,14 +69,13 @@ impl<'a> Directories<'a> {
         found
     }
 
-    /// The lower byte of the meaning of levels, in each directory whose numbers are not unsigned.
+    /// The lower byte of the meaning of levels, in each directory whose white is zero.
     fn inverted(&self) -> Vec<usize> {
         let in_directory = |entries: &Vec<usize>| {
             let entry = |tag| entries.iter().find(|at| self.u16(**at) == tag);
             let value = |tag| entry(tag).map(|at| at + if self.is_big { 12 } else { 8 });
-            let (meaning, kind) = (value(PHOTOMETRIC)?, value(SAMPLE_FORMAT)?);
-            let is_inverted = self.u16(meaning) == 0 && self.u16(kind) > 1;
-            is_inverted.then_some(meaning + usize::from(self.order == Endian::Big))
+            let meaning = value(PHOTOMETRIC)?;
+            (self.u16(meaning) == 0).then_some(meaning + usize::from(self.order == Endian::Big))
         };
         self.all().iter().filter_map(in_directory).collect()
     }
