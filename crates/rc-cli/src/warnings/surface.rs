@@ -60,19 +60,13 @@ impl Shape {
     pub(crate) fn warnings(self) -> Vec<Warning> {
         let (slope, shorter) = (digits(self.rms_slope, 3), self.sides[0].min(self.sides[1]));
         let mut found = Vec::new();
-        if self.rms_slope > STEEPEST || self.range > DEEPEST * shorter {
+        let is_rough = self.rms_slope > STEEPEST || self.range > DEEPEST * shorter;
+        let is_smooth = self.range < SHALLOWEST || self.rms_slope < FLATTEST;
+        if is_rough || is_smooth {
+            let what = if is_rough { "hardly a rough surface" } else { "smoother than any surface" };
             let text = format!(
-                "heights over a range of {} on a side of {}, with an rms slope of {slope}, are hardly a rough surface; check \
-                 the units of heights (--unit, --height-unit, --height-scale) and the size (--cell)",
-                engineering(self.range, "m"),
-                engineering(shorter, "m")
-            );
-            found.push(Warning::new(Units, text));
-        }
-        if self.range < SHALLOWEST || self.rms_slope < FLATTEST {
-            let text = format!(
-                "heights over a range of {} on a side of {}, with an rms slope of {slope}, are smoother than any surface; check \
-                 the units of heights (--unit, --height-unit, --height-scale) and the size (--cell)",
+                "heights over a range of {} on a side of {}, with an rms slope of {slope}, are {what}; check the units of heights \
+                 (--unit, --height-unit, --height-scale) and the size (--cell)",
                 engineering(self.range, "m"),
                 engineering(shorter, "m")
             );

@@ -23,8 +23,8 @@ struct Directories<'a> {
 
 /// The file, in which no white is zero.
 ///
-/// Decoders invert levels of images whose white is zero. That is how a picture is shown, and has no meaning for heights,
-/// which are the numbers of the file.
+/// Decoders invert levels of images whose white is zero. That is how a picture is shown, and has no meaning for
+/// heights, which are the numbers of the file.
 pub(super) fn as_stored(bytes: &[u8]) -> Cow<'_, [u8]> {
     let places = Directories::of(bytes).map(|directories| directories.inverted()).unwrap_or_default();
     if places.is_empty() {
