@@ -11,6 +11,7 @@
 //! | [`field_of_columns`] | inverse transform of waves in the columns kx = 0, 1, … to a real field |
 //! | [`powers_of_lines`] | transforms of rows and of columns, one axis at a time, and weighted sums of their powers |
 //! | [`TransformReal`] | one-dimensional transforms |
+//! | [`has_small_factors`] | whether transforms of a length are fast |
 //! | [`Instructions`] | the vector instructions in use, which the environment variable `RC_SIMD` can lower |
 //!
 //! Results are bitwise the same for any number of threads. Work is divided over rows and columns, never inside one
@@ -30,6 +31,7 @@
 //! ```
 
 mod convolution;
+mod factors;
 mod half_plane;
 mod instructions;
 mod lines;
@@ -38,6 +40,7 @@ mod real_by_complex;
 mod symbol_table;
 
 pub use convolution::{BLOCK_ROWS, Convolution};
+pub use factors::has_small_factors;
 pub use half_plane::{field_of_columns, half_plane_values};
 pub use instructions::Instructions;
 pub use lines::powers_of_lines;

@@ -5,7 +5,7 @@
 //! dynamic call and a lock without contention.
 
 use std::mem;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use rayon::prelude::*;
 use rc_core::Field;
@@ -61,6 +61,18 @@ pub(crate) fn zeros<T: Copy + Default + Send>(n: usize) -> Vec<T> {
     let mut values = vec![T::default(); n];
     for_each(values.chunks_mut(BLOCK), |block| block.fill(T::default()));
     values
+}
+
+/// The value of `cell`, which is made if the cell is empty.
+///
+/// It is not made under a lock. A thread that waits for others inside `make` may begin to work on another load, which
+/// wants the same value.
+pub(crate) fn made<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
+    if let Some(value) = cell.get() {
+        return value;
+    }
+    let value = make();
+    cell.get_or_init(|| value)
 }
 
 /// One item for each block, and its result.

@@ -1,22 +1,23 @@
 //! Conjugate directions, with which the descent and the contact stiffness iterate.
 
-use super::layout::BlockLayout;
-use super::operators::{PreconditionedOperator, read_blocks, write_blocks};
-use super::rows::{self, ClippedStep, ConjugateStep};
+use crate::descent::layout::BlockLayout;
+use crate::descent::operators::{PreconditionedOperator, read_blocks, write_blocks};
+use crate::descent::rows;
+use crate::descent::rows::{ClippedStep, ConjugateStep};
 use crate::parallel;
 
 /// Directions of preconditioned conjugate gradients on the elements of one mesh, in single precision.
 pub(crate) struct ConjugateDirections {
     /// Elements that the iteration changes.
-    pub(super) active: Vec<bool>,
+    pub(crate) active: Vec<bool>,
     /// The present direction t. It is zero on elements that are not active.
-    pub(super) direction: Vec<f32>,
+    pub(crate) direction: Vec<f32>,
     /// The displacement u = L t of the present direction.
-    pub(super) displacement: Vec<f32>,
+    pub(crate) displacement: Vec<f32>,
     /// The residual, and later the preconditioned residual z.
     ///
     /// Between a clipped step and the next round, it has the pressures that clipping has added.
-    pub(super) preconditioned: Vec<f32>,
+    pub(crate) preconditioned: Vec<f32>,
 }
 
 /// Sums of the preconditioned residual z over the active elements.
@@ -75,7 +76,7 @@ impl ConjugateDirections {
     /// The present direction for a step that is clipped, with room for added pressures.
     ///
     /// Clipping adds these pressures. They take the room of the residual, which is lost.
-    pub(super) fn clipped_steps(&mut self, len: usize) -> impl Iterator<Item = ClippedStep<'_>> {
+    pub(crate) fn clipped_steps(&mut self, len: usize) -> impl Iterator<Item = ClippedStep<'_>> {
         let Self { active, direction, displacement, preconditioned } = self;
         let along = direction.chunks(len).zip(displacement.chunks(len));
         let changed = active.chunks_mut(len).zip(preconditioned.chunks_mut(len));
@@ -90,12 +91,12 @@ impl ConjugateDirections {
     /// Room for displacements, in blocks.
     ///
     /// They take the room of the pressures that clipping has added, which are lost.
-    pub(super) fn displacements_mut(&mut self, len: usize) -> impl Iterator<Item = &mut [f32]> {
+    pub(crate) fn displacements_mut(&mut self, len: usize) -> impl Iterator<Item = &mut [f32]> {
         self.preconditioned.chunks_mut(len)
     }
 
     /// The pressures that clipping has added, or the displacements that were put there.
-    pub(super) fn added(&self) -> &[f32] {
+    pub(crate) fn added(&self) -> &[f32] {
         &self.preconditioned
     }
 

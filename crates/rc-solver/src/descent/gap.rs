@@ -1,12 +1,12 @@
 //! The gap under a pressure, and the scaling of both.
 
-use super::layout::BlockLayout;
-use super::operators::{BlockOperator, read_blocks, write_blocks};
-use super::rows::ElementValues;
-use super::sums::GapSums;
-use crate::Control;
+use crate::descent::layout::BlockLayout;
+use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
+use crate::descent::rows::ElementValues;
+use crate::descent::sums::GapSums;
 use crate::parallel;
-use crate::problem::Problem;
+use crate::problem::checked::Problem;
+use crate::problem::control::Control;
 
 /// Computes the gap under the pressure from a fresh application of L.
 pub(crate) fn fresh_gap(

@@ -74,7 +74,7 @@ impl BlockLayout {
     /// Number of the largest elements along both axes of the cell.
     ///
     /// It is 1 if places are unknown.
-    pub(super) fn sides(&self) -> [usize; 2] {
+    pub(crate) fn sides(&self) -> [usize; 2] {
         match self.places {
             Places::Anywhere => [1, 1],
             Places::Rows(sides) | Places::Runs { sides, .. } => sides,

@@ -4,15 +4,16 @@
 //! change along p (1 - p/H) instead. Elements at 0 and at H keep their pressure. Others stay between these bounds for
 //! multiples from -1 to 1. Where p is far below H, the change is a scaling.
 
-use super::layout::BlockLayout;
-use super::operators::{read_blocks, write_blocks};
-use super::rows::{self, ElementValues, Gradient};
-use super::shares::{Load, Shares};
-use super::state::Descent;
-use super::sums::GapSums;
-use crate::Control;
+use crate::descent::layout::BlockLayout;
+use crate::descent::operators::{read_blocks, write_blocks};
+use crate::descent::rows;
+use crate::descent::rows::{ElementValues, Gradient};
+use crate::descent::shares::{Load, Shares};
+use crate::descent::state::Descent;
+use crate::descent::sums::GapSums;
 use crate::parallel;
-use crate::problem::Problem;
+use crate::problem::checked::Problem;
+use crate::problem::control::Control;
 
 /// Relative distance below the hardness within which pressures count as the hardness: prolongation rounds.
 const SNAP: f64 = 1e-12;
@@ -167,7 +168,7 @@ impl Descent<'_> {
     /// Whether the hardness may limit pressures when the loads of squares are shared out.
     ///
     /// This is never so without a hardness.
-    pub(super) fn is_limited(&self, shares: &Shares) -> bool {
+    pub(crate) fn is_limited(&self, shares: &Shares) -> bool {
         let hardness = self.problem.hardness;
         hardness.is_finite() && MARGIN * shares.maximum() * parallel::maximum(&self.pressure, 0.0) >= hardness
     }
@@ -175,7 +176,7 @@ impl Descent<'_> {
     /// Limits the pressure and restores the load, in the order of gaps.
     ///
     /// Before gaps are known, depths are in their place.
-    pub(super) fn limit_pressure(&mut self) {
+    pub(crate) fn limit_pressure(&mut self) {
         let (n_cell, layout) = (self.n_cell(), self.layout.clone());
         limit_to_load(self.problem, n_cell, &layout, &mut self.pressure, Some(&self.gap));
     }
@@ -183,7 +184,7 @@ impl Descent<'_> {
     /// Limits the pressure of a start and restores its load. No gap is known.
     ///
     /// The gap comes from a fresh application of L.
-    pub(super) fn limit_start(&mut self) -> GapSums {
+    pub(crate) fn limit_start(&mut self) -> GapSums {
         for (g, h) in self.gap.iter_mut().zip(self.heights) {
             *g = -h;
         }
@@ -193,14 +194,14 @@ impl Descent<'_> {
     }
 
     /// Limits a start that has pressures beyond the hardness, as [`Descent::limit_start`].
-    pub(super) fn limited(&mut self, sums: GapSums) -> GapSums {
+    pub(crate) fn limited(&mut self, sums: GapSums) -> GapSums {
         if sums.max_pressure > self.problem.hardness { self.limit_start() } else { sums }
     }
 
     /// Ends a step that was clipped: restores the load, or follows the penetration.
     ///
     /// Each part of the load is restored where it was.
-    pub(super) fn project_limited(
+    pub(crate) fn project_limited(
         &mut self,
         n_clipped: u64,
         (loads, shares): (&[Load], &Shares),

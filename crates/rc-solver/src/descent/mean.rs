@@ -2,11 +2,11 @@
 //!
 //! It is free, like any other wave of the pressure.
 
-use super::operators::{read_blocks, write_blocks};
-use super::state::Descent;
-use super::sums::GapSums;
-use crate::Control;
+use crate::descent::operators::{read_blocks, write_blocks};
+use crate::descent::state::Descent;
+use crate::descent::sums::GapSums;
 use crate::parallel;
+use crate::problem::control::Control;
 
 /// Part of the cell in contact from which the uniform pressure's stiffness is computed.
 ///

@@ -2,7 +2,7 @@
 //!
 //! It applies L and its approximate inverse to vectors.
 
-use super::layout::BlockLayout;
+use crate::descent::layout::BlockLayout;
 use crate::parallel::Tasks;
 
 /// L on the vectors of one mesh, in values of type `T`.

@@ -1,10 +1,10 @@
 //! The result of a descent: the certificate and the observables.
 
-use super::sums::GapSums;
-use crate::Certificate;
-use crate::certificate::Residuals;
-use crate::problem::Problem;
-use crate::solution::{LevelInfo, LevelValues, SolveInfo};
+use crate::descent::certificate::Certificate;
+use crate::descent::certificate::Residuals;
+use crate::descent::info::{LevelInfo, LevelValues, SolveInfo};
+use crate::descent::sums::GapSums;
+use crate::problem::checked::Problem;
 
 /// The result of a descent.
 pub(crate) struct Outcome {

@@ -2,17 +2,18 @@
 //!
 //! The projection chooses the next active elements.
 
-use super::directions::Slope;
-use super::operators::{read_blocks, write_blocks};
-use super::rows::{self, ElementValues, Gradient};
-use super::shares::{Load, Shares, Squares};
-use super::state::Descent;
-use super::stop::{Stopped, unless_stopped};
-use super::sums::GapSums;
+use crate::descent::directions::Slope;
+use crate::descent::operators::{read_blocks, write_blocks};
+use crate::descent::rows;
+use crate::descent::rows::{ElementValues, Gradient};
+use crate::descent::shares::{Load, Shares, Squares};
+use crate::descent::state::Descent;
+use crate::descent::stop::{Stopped, unless_stopped};
+use crate::descent::sums::GapSums;
 use rc_core::{Boundary, Observer};
 
-use crate::Control;
 use crate::parallel;
+use crate::problem::control::Control;
 
 /// The active elements of a round.
 struct ActiveSet {

@@ -5,7 +5,7 @@
 //! then block by block. The overlap of the heights with the rigid plane, h - c, is computed first. A constant in the
 //! heights, however large, then cancels before anything is added to it.
 
-use super::sums::GapSums;
+use crate::descent::sums::GapSums;
 
 /// Heights, pressure and gap of the elements of a block, or of all elements.
 pub(crate) struct ElementValues<'a> {
@@ -16,13 +16,13 @@ pub(crate) struct ElementValues<'a> {
 
 impl ElementValues<'_> {
     /// Divides into blocks of `len` elements.
-    pub(super) fn blocks(self, len: usize) -> impl Iterator<Item = Self> {
+    pub(crate) fn blocks(self, len: usize) -> impl Iterator<Item = Self> {
         let pressure_and_gap = self.pressure.chunks_mut(len).zip(self.gap.chunks_mut(len));
         self.heights.chunks(len).zip(pressure_and_gap).map(|(heights, (pressure, gap))| Self { heights, pressure, gap })
     }
 
     /// Writes `g = L p - h + c` from a fresh `displacement = L p`, where c is `offset`.
-    pub(super) fn fresh_gap(self, displacement: &[f64], offset: f64, mut sums: GapSums) -> GapSums {
+    pub(crate) fn fresh_gap(self, displacement: &[f64], offset: f64, mut sums: GapSums) -> GapSums {
         for (((&v, &h), &mut p), g) in displacement.iter().zip(self.heights).zip(self.pressure).zip(self.gap) {
             let overlap = h - offset;
             *g = v - overlap;
@@ -32,7 +32,7 @@ impl ElementValues<'_> {
     }
 
     /// Multiplies the pressure by `scale`. The gap follows, since v is linear in p.
-    pub(super) fn rescale(self, scale: f64, offset: f64, mut sums: GapSums) -> GapSums {
+    pub(crate) fn rescale(self, scale: f64, offset: f64, mut sums: GapSums) -> GapSums {
         for ((&h, p), g) in self.heights.iter().zip(self.pressure).zip(self.gap) {
             let overlap = h - offset;
             *p *= scale;
@@ -45,7 +45,7 @@ impl ElementValues<'_> {
     /// Adds the displacement of the pressures that clipping has added, then scales the pressure.
     ///
     /// The displacement is in units of `range`. The factor on the pressure is `scale`.
-    pub(super) fn add_clipped(
+    pub(crate) fn add_clipped(
         self,
         displacement: &[f32],
         range: f64,
@@ -66,7 +66,7 @@ impl ElementValues<'_> {
     ///
     /// If they are `chosen`, they are those of `active`. Otherwise they are those that press or penetrate. Returns
     /// their number, and the sum of the last `direction` over them.
-    pub(super) fn first_residual(
+    pub(crate) fn first_residual(
         self,
         gradient: &Gradient,
         direction: &[f32],
@@ -88,7 +88,7 @@ impl ElementValues<'_> {
     }
 
     /// Takes the step `length` along a direction and writes the residual on the same elements.
-    pub(super) fn next_residual(
+    pub(crate) fn next_residual(
         self,
         length: f64,
         step: &ConjugateStep<'_>,
@@ -112,7 +112,7 @@ impl ElementValues<'_> {
     /// The next active elements are chosen before clipping. They are elements between both bounds, elements outside
     /// that penetrate, and plastic elements with a gap. Those that penetrate get `joining` times their overlap as a
     /// pressure. Plastic elements lose as much.
-    pub(super) fn clip(&mut self, length: f64, joining: f64, step: &mut ClippedStep<'_>, gradient: &Gradient) -> u32 {
+    pub(crate) fn clip(&mut self, length: f64, joining: f64, step: &mut ClippedStep<'_>, gradient: &Gradient) -> u32 {
         // Two functions are compiled. That for surfaces without a hardness has no comparison with it.
         if gradient.hardness.is_finite() {
             self.clip_to::<true>(length, joining, step, gradient)
@@ -157,7 +157,7 @@ impl ElementValues<'_> {
 /// Multiplies some pressures by `share`, and returns Σ p.
 ///
 /// `written` gets the change of the pressures, in units of `1 / unit`, plus the pressures that clipping has `added`.
-pub(super) fn share(pressure: &mut [f64], share: f64, unit: f64, added: &[f32], written: &mut [f32]) -> f64 {
+pub(crate) fn share(pressure: &mut [f64], share: f64, unit: f64, added: &[f32], written: &mut [f32]) -> f64 {
     let mut sum = 0.0;
     for ((p, added), written) in pressure.iter_mut().zip(added).zip(written) {
         *written = ((share - 1.0) * *p * unit) as f32 + added;
@@ -168,20 +168,20 @@ pub(super) fn share(pressure: &mut [f64], share: f64, unit: f64, added: &[f32], 
 }
 
 /// A direction and its displacement for a step that is clipped.
-pub(super) struct ClippedStep<'a> {
-    pub(super) direction: &'a [f32],
-    pub(super) displacement: &'a [f32],
+pub(crate) struct ClippedStep<'a> {
+    pub(crate) direction: &'a [f32],
+    pub(crate) displacement: &'a [f32],
     /// The elements that the step changes, and later the next active elements.
-    pub(super) active: &'a mut [bool],
+    pub(crate) active: &'a mut [bool],
     /// Room for the pressures that clipping adds.
-    pub(super) added: &'a mut [f32],
+    pub(crate) added: &'a mut [f32],
 }
 
 /// A direction, its displacement, and the elements it changes.
 pub(crate) struct ConjugateStep<'a> {
-    pub(super) direction: &'a [f32],
-    pub(super) displacement: &'a [f32],
-    pub(super) active: &'a [bool],
+    pub(crate) direction: &'a [f32],
+    pub(crate) displacement: &'a [f32],
+    pub(crate) active: &'a [bool],
 }
 
 impl ConjugateStep<'_> {
@@ -196,16 +196,16 @@ impl ConjugateStep<'_> {
 
 /// The gradient of the energy: the gap minus the gap of elements in contact.
 #[derive(Clone, Copy)]
-pub(super) struct Gradient {
-    pub(super) zero_gap: f64,
+pub(crate) struct Gradient {
+    pub(crate) zero_gap: f64,
     /// Factor on residuals: 1/H.
-    pub(super) unit: f64,
+    pub(crate) unit: f64,
     /// The maximum pressure.
-    pub(super) hardness: f64,
+    pub(crate) hardness: f64,
 }
 
 impl Gradient {
-    pub(super) fn of_gap(&self, gap: f64) -> f64 {
+    pub(crate) fn of_gap(&self, gap: f64) -> f64 {
         gap - self.zero_gap
     }
 
@@ -217,7 +217,7 @@ impl Gradient {
 /// Sums over the active elements of the preconditioned residual z: Σ z, Σ z u and Σ u.
 ///
 /// u is the displacement of the last direction.
-pub(super) fn sums_of_preconditioned(preconditioned: &[f32], displacement: &[f32], active: &[bool]) -> [f64; 3] {
+pub(crate) fn sums_of_preconditioned(preconditioned: &[f32], displacement: &[f32], active: &[bool]) -> [f64; 3] {
     let mut sums = [0.0; 3];
     for ((&z, &u), &active) in preconditioned.iter().zip(displacement).zip(active) {
         if active {
@@ -233,7 +233,7 @@ pub(super) fn sums_of_preconditioned(preconditioned: &[f32], displacement: &[f32
 /// Keeps the displacement u of the direction t.
 ///
 /// Returns Σ t u, Σ t (gradient) and Σ u over the active elements.
-pub(super) fn keep_displacement(
+pub(crate) fn keep_displacement(
     read: &[f32],
     direction: &[f32],
     gradient: impl Iterator<Item = f64>,
@@ -256,7 +256,7 @@ pub(super) fn keep_displacement(
 /// Products with the `direction` d of each pressure: Σ d, Σ d g and Σ d u.
 ///
 /// u is the `displacement` of d.
-pub(super) fn products(
+pub(crate) fn products(
     pressure: &[f64],
     gap: &[f64],
     displacement: &[f32],
@@ -273,7 +273,7 @@ pub(super) fn products(
 }
 
 /// Moves on to the next direction, `t = -z + β t + shift` on the active elements, zero elsewhere.
-pub(super) fn next_direction(
+pub(crate) fn next_direction(
     preconditioned: &[f32],
     [beta, shift]: [f32; 2],
     active: &[bool],

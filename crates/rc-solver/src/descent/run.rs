@@ -2,11 +2,11 @@
 
 use rc_core::{Event, Observer};
 
-use super::observed::ObservedMesh;
-use super::outcome::Outcome;
-use super::state::Descent;
-use super::sums::GapSums;
-use crate::ErrorBound;
+use crate::descent::observed::ObservedMesh;
+use crate::descent::outcome::Outcome;
+use crate::descent::state::Descent;
+use crate::descent::sums::GapSums;
+use crate::problem::tolerance::ErrorBound;
 
 /// Conjugate-gradient steps between two clippings.
 ///

@@ -5,9 +5,9 @@
 
 use rc_core::Observer;
 
-use super::state::Descent;
-use super::stop::Stopped;
-use super::sums::GapSums;
+use crate::descent::state::Descent;
+use crate::descent::stop::Stopped;
+use crate::descent::sums::GapSums;
 use crate::parallel;
 
 /// Factor of all later steps, if no part of a round lowers the energy.

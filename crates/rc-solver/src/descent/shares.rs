@@ -19,11 +19,11 @@ const LEAST_PART: f64 = 0.5;
 
 /// The load of a square.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Load {
+pub(crate) struct Load {
     /// Σ p after clipping.
-    pub(super) clipped: f64,
+    pub(crate) clipped: f64,
     /// Sum of the pressures that clipping has added.
-    pub(super) added: f64,
+    pub(crate) added: f64,
 }
 
 impl Load {
@@ -32,37 +32,37 @@ impl Load {
         (self.clipped - self.added).max(LEAST_PART * self.clipped)
     }
 
-    pub(super) fn plus(self, other: Self, area: f64) -> Self {
+    pub(crate) fn plus(self, other: Self, area: f64) -> Self {
         Self { clipped: self.clipped + area * other.clipped, added: self.added + area * other.added }
     }
 }
 
 /// The division of the cell into squares.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Squares {
+pub(crate) struct Squares {
     /// Number of squares along both axes, powers of two.
     n: [usize; 2],
 }
 
 impl Squares {
     /// Squares of a cell with these numbers of elements along both axes.
-    pub(super) fn new(sides: [usize; 2]) -> Self {
+    pub(crate) fn new(sides: [usize; 2]) -> Self {
         Self { n: sides.map(|side| 1 << (side / SMALLEST_SQUARE).max(1).ilog2()) }
     }
 
-    pub(super) fn len(self) -> usize {
+    pub(crate) fn len(self) -> usize {
         self.n[0] * self.n[1]
     }
 
     /// The square around a place, which is in parts of the cell.
-    pub(super) fn at(self, place: [f64; 2]) -> usize {
+    pub(crate) fn at(self, place: [f64; 2]) -> usize {
         let [x, y] = [0, 1].map(|axis| ((place[axis] * self.n[axis] as f64) as usize).min(self.n[axis] - 1));
         y * self.n[0] + x
     }
 }
 
 /// Factors on the pressures of a cell.
-pub(super) struct Shares {
+pub(crate) struct Shares {
     squares: Squares,
     /// The wanted load and the present load of each square.
     loads: Vec<[f64; 2]>,
@@ -70,7 +70,7 @@ pub(super) struct Shares {
 
 impl Shares {
     /// Factors for the `loads` of squares. The sum of the loads stays as it is.
-    pub(super) fn new(squares: Squares, loads: &[Load]) -> Self {
+    pub(crate) fn new(squares: Squares, loads: &[Load]) -> Self {
         let mut levels = vec![(squares.n, loads.to_vec())];
         while let Some((n, finer)) = levels.last().filter(|(n, _)| *n != [1, 1]) {
             let half = n.map(|n| n.div_ceil(2));
@@ -98,19 +98,19 @@ impl Shares {
     }
 
     /// The maximum factor.
-    pub(super) fn maximum(&self) -> f64 {
+    pub(crate) fn maximum(&self) -> f64 {
         let factors = self.loads.iter().filter(|[_, clipped]| *clipped > 0.0).map(|[wanted, clipped]| wanted / clipped);
         factors.fold(1.0, f64::max)
     }
 
     /// The wanted gains of squares, relative to the `rooms` that their pressures have.
-    pub(super) fn changes(&self, rooms: &[f64]) -> Self {
+    pub(crate) fn changes(&self, rooms: &[f64]) -> Self {
         let loads = self.loads.iter().zip(rooms).map(|([wanted, clipped], room)| [wanted - clipped, *room]);
         Self { squares: self.squares, loads: loads.collect() }
     }
 
     /// The factor at a place, which is in parts of the cell.
-    pub(super) fn at(&self, place: [f64; 2]) -> f64 {
+    pub(crate) fn at(&self, place: [f64; 2]) -> f64 {
         let n = self.squares.n;
         let [(x, ax), (y, ay)] = [0, 1].map(|axis| {
             let from_centre = place[axis] * n[axis] as f64 - 0.5;

@@ -1,13 +1,13 @@
 //! The first pressure and gap of a descent.
 
-use super::gap::{mean_pressure, scale_to_load};
-use super::limited::is_plastic;
-use super::state::Descent;
-use super::sums::GapSums;
-use crate::Control;
+use crate::descent::gap::{mean_pressure, scale_to_load};
+use crate::descent::limited::is_plastic;
+use crate::descent::state::Descent;
+use crate::descent::sums::GapSums;
 use crate::parallel;
 #[cfg(doc)]
-use crate::problem::Problem;
+use crate::problem::checked::Problem;
+use crate::problem::control::Control;
 
 /// Factor by which the pressure of a rigid overlap may miss the prescribed load.
 ///

@@ -2,16 +2,16 @@
 
 use rc_core::{Boundary, Field, Grid};
 
-use super::directions::ConjugateDirections;
-use super::gap::{fresh_gap, rescale};
-use super::layout::BlockLayout;
-use super::operators::LevelOperators;
-use super::outcome::Outcome;
-use super::rows::ElementValues;
-use super::sums::GapSums;
+use crate::descent::directions::ConjugateDirections;
+use crate::descent::gap::{fresh_gap, rescale};
+use crate::descent::info::{GridSolution, LevelInfo, LevelValues, Status};
+use crate::descent::layout::BlockLayout;
+use crate::descent::operators::LevelOperators;
+use crate::descent::outcome::Outcome;
+use crate::descent::rows::ElementValues;
+use crate::descent::sums::GapSums;
 use crate::parallel;
-use crate::problem::Problem;
-use crate::solution::{GridSolution, LevelInfo, LevelValues, Status};
+use crate::problem::checked::Problem;
 
 /// The start of a descent.
 pub(crate) enum Start {
@@ -25,27 +25,27 @@ pub(crate) enum Start {
 
 /// Pressure, gap and everything that one level needs to improve them.
 pub(crate) struct Descent<'a> {
-    pub(super) problem: &'a Problem,
-    pub(super) layout: BlockLayout,
-    pub(super) operators: LevelOperators<'a>,
-    pub(super) heights: &'a [f64],
-    pub(super) pressure: Vec<f64>,
-    pub(super) gap: Vec<f64>,
-    pub(super) directions: ConjugateDirections,
+    pub(crate) problem: &'a Problem,
+    pub(crate) layout: BlockLayout,
+    pub(crate) operators: LevelOperators<'a>,
+    pub(crate) heights: &'a [f64],
+    pub(crate) pressure: Vec<f64>,
+    pub(crate) gap: Vec<f64>,
+    pub(crate) directions: ConjugateDirections,
     /// ⟨t, L t⟩ of the last step. Infinite if the next direction need not be conjugate to another.
-    pub(super) curvature: f64,
+    pub(crate) curvature: f64,
     /// Factor of the length of steps. It is 1 unless rounds would raise the energy.
-    pub(super) step_factor: f64,
+    pub(crate) step_factor: f64,
     /// Whether the last projection has chosen the active elements.
-    pub(super) is_chosen: bool,
+    pub(crate) is_chosen: bool,
     /// The gap of elements in contact.
-    pub(super) zero_gap: f64,
+    pub(crate) zero_gap: f64,
     /// Pressure above which elements are well inside contact.
-    pub(super) pressed: f64,
+    pub(crate) pressed: f64,
     /// Whether a pressure was given to start from. The flag below says the same of the gap.
-    pub(super) has_start: bool,
-    pub(super) has_gap: bool,
-    pub(super) info: LevelInfo,
+    pub(crate) has_start: bool,
+    pub(crate) has_gap: bool,
+    pub(crate) info: LevelInfo,
 }
 
 impl<'a> Descent<'a> {
@@ -138,17 +138,17 @@ impl<'a> Descent<'a> {
     }
 
     /// Number of the smallest elements that the whole cell has room for.
-    pub(super) fn n_cell(&self) -> f64 {
+    pub(crate) fn n_cell(&self) -> f64 {
         self.info.grid.len() as f64
     }
 
     /// Heights, pressure and gap.
-    pub(super) fn elements(&mut self) -> ElementValues<'_> {
+    pub(crate) fn elements(&mut self) -> ElementValues<'_> {
         ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap }
     }
 
     /// Computes the gap from a fresh application of L, in double precision.
-    pub(super) fn fresh_gap(&mut self) -> GapSums {
+    pub(crate) fn fresh_gap(&mut self) -> GapSums {
         self.info.operator_applications += 1;
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         // Fresh gaps are rare. An operator keeps no memory for vectors while the other one works.
@@ -165,7 +165,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Multiplies the pressure by `scale`. The gap follows.
-    pub(super) fn rescale(&mut self, scale: f64) -> GapSums {
+    pub(crate) fn rescale(&mut self, scale: f64) -> GapSums {
         let (layout, problem) = (self.layout.clone(), self.problem);
         let empty = GapSums::empty(self.pressed, problem.hardness);
         let sums = rescale(scale, &layout, problem, self.elements(), empty);
@@ -174,12 +174,12 @@ impl<'a> Descent<'a> {
     }
 
     /// Notes the gap of elements in contact.
-    pub(super) fn settle(&mut self, sums: GapSums) -> GapSums {
+    pub(crate) fn settle(&mut self, sums: GapSums) -> GapSums {
         self.zero_gap = sums.zero_gap(self.problem);
         sums
     }
 
-    pub(super) fn outcome(&self, sums: &GapSums, converged: bool) -> Outcome {
+    pub(crate) fn outcome(&self, sums: &GapSums, converged: bool) -> Outcome {
         Outcome::new(self.problem, sums, self.n_cell(), converged)
     }
 

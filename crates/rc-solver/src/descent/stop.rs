@@ -5,8 +5,8 @@
 
 use rc_core::Observer;
 
-use super::gap::scale_to_load;
-use super::state::Descent;
+use crate::descent::gap::scale_to_load;
+use crate::descent::state::Descent;
 use crate::parallel;
 
 /// The observer wants to stop, and the round has ended early.

@@ -1,8 +1,8 @@
 //! Sums over pressure and gap. They scale the pressure and measure its error.
 
-use super::layout::BlockLayout;
-use crate::Control;
-use crate::problem::Problem;
+use crate::descent::layout::BlockLayout;
+use crate::problem::checked::Problem;
+use crate::problem::control::Control;
 
 /// Maximum factor by which a round scales the pressure under penetration control.
 const MAXIMUM_SCALING: f64 = 4.0;
@@ -13,43 +13,43 @@ const MAXIMUM_SCALING: f64 = 4.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GapSums {
     /// Σ p
-    pub(super) pressure: f64,
+    pub(crate) pressure: f64,
     /// Σ p g
-    pub(super) pressure_gap: f64,
+    pub(crate) pressure_gap: f64,
     /// Σ p (h - c), with the constant c of `g = L p - h + c`
-    pub(super) pressure_overlap: f64,
+    pub(crate) pressure_overlap: f64,
     /// min g
-    pub(super) min_gap: f64,
+    pub(crate) min_gap: f64,
     /// Σ g over p > 0
-    pub(super) contact_gap: f64,
+    pub(crate) contact_gap: f64,
     /// Σ 1 over p > 0
-    pub(super) n_contact: f64,
+    pub(crate) n_contact: f64,
     /// max p
-    pub(super) max_pressure: f64,
+    pub(crate) max_pressure: f64,
     /// max g over p > `pressed`
-    pub(super) max_pressed_gap: f64,
+    pub(crate) max_pressed_gap: f64,
     /// Pressure above which elements are well inside contact.
-    pub(super) pressed: f64,
+    pub(crate) pressed: f64,
     /// The maximum pressure.
     ///
     /// Of the sums above, elements at this pressure enter only `max_pressure`.
-    pub(super) hardness: f64,
-    pub(super) plastic: PlasticSums,
+    pub(crate) hardness: f64,
+    pub(crate) plastic: PlasticSums,
 }
 
 /// Sums over plastic elements, whose pressure is the hardness.
 ///
 /// A plastic element must not have a gap.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PlasticSums {
+pub(crate) struct PlasticSums {
     /// Σ 1
-    pub(super) n: f64,
+    pub(crate) n: f64,
     /// Σ g
-    pub(super) gap: f64,
+    pub(crate) gap: f64,
     /// Σ (h - c)
-    pub(super) overlap: f64,
+    pub(crate) overlap: f64,
     /// max g
-    pub(super) max_gap: f64,
+    pub(crate) max_gap: f64,
 }
 
 impl PlasticSums {
@@ -101,11 +101,11 @@ impl GapSums {
     }
 
     /// The pressure above which elements of the next sums are well inside contact.
-    pub(super) fn next_pressed(&self) -> f64 {
+    pub(crate) fn next_pressed(&self) -> f64 {
         PRESSED * self.max_pressure
     }
 
-    pub(super) fn add_element(&mut self, p: f64, g: f64, overlap: f64) {
+    pub(crate) fn add_element(&mut self, p: f64, g: f64, overlap: f64) {
         if p > 0.0 {
             if p >= self.hardness {
                 self.plastic.add(g, overlap);
@@ -126,7 +126,7 @@ impl GapSums {
     }
 
     /// Adds the sums of blocks in their order, weighted by the area of their elements.
-    pub(super) fn total(layout: &BlockLayout, sums: Vec<Self>) -> Self {
+    pub(crate) fn total(layout: &BlockLayout, sums: Vec<Self>) -> Self {
         let empty = sums
             .first()
             .map_or(Self::empty(f64::INFINITY, f64::INFINITY), |block| Self::empty(block.pressed, block.hardness));
@@ -182,7 +182,7 @@ impl GapSums {
     }
 
     /// Pressure-weighted mean of the gap, over elements that are not plastic.
-    pub(super) fn mean_gap(&self, problem: &Problem) -> f64 {
+    pub(crate) fn mean_gap(&self, problem: &Problem) -> f64 {
         if self.pressure > 0.0 { self.pressure_gap / self.pressure } else { self.gap_of_plastic(problem) }
     }
 
@@ -201,7 +201,7 @@ impl GapSums {
     }
 
     /// Whether any element is plastic.
-    pub(super) fn has_plastic(&self) -> bool {
+    pub(crate) fn has_plastic(&self) -> bool {
         self.plastic.n > 0.0
     }
 
@@ -214,22 +214,22 @@ impl GapSums {
     }
 
     /// Σ p over all elements.
-    pub(super) fn load(&self) -> f64 {
+    pub(crate) fn load(&self) -> f64 {
         self.pressure + self.of_plastic(self.plastic.n)
     }
 
     /// Number of elements in contact.
-    pub(super) fn n_in_contact(&self) -> f64 {
+    pub(crate) fn n_in_contact(&self) -> f64 {
         self.n_contact + self.plastic.n
     }
 
     /// Σ p v
-    pub(super) fn work(&self) -> f64 {
+    pub(crate) fn work(&self) -> f64 {
         self.pressure_gap + self.pressure_overlap + self.of_plastic(self.plastic.gap + self.plastic.overlap)
     }
 
     /// Maximum gap of plastic elements minus the gap of contact, at least 0.
-    pub(super) fn plastic_gap(&self, contact_gap: f64) -> f64 {
+    pub(crate) fn plastic_gap(&self, contact_gap: f64) -> f64 {
         let gap = self.plastic.max_gap - contact_gap;
         // NaN stays.
         if gap < 0.0 { 0.0 } else { gap }
@@ -239,7 +239,7 @@ impl GapSums {
     ///
     /// It is zero, the exact value, where the penetration is prescribed and elements are plastic. No scaling of the
     /// pressure could close the mean gap of the other elements there.
-    pub(super) fn reference_gap(&self, problem: &Problem) -> f64 {
+    pub(crate) fn reference_gap(&self, problem: &Problem) -> f64 {
         match problem.control {
             Control::Penetration(_) if !self.may_scale() => 0.0,
             _ => self.mean_gap(problem),
@@ -247,7 +247,7 @@ impl GapSums {
     }
 
     /// Whether no pressure is the hardness, even after scaling closes the mean gap.
-    pub(super) fn may_scale(&self) -> bool {
+    pub(crate) fn may_scale(&self) -> bool {
         // An infinite hardness allows everything.
         !self.has_plastic() && self.scale_to_no_gap().is_none_or(|scale| scale * self.max_pressure <= self.hardness)
     }
@@ -257,7 +257,7 @@ impl GapSums {
     /// The maximum is over possible pressures p* with the mean of p. The bound is the weighted mean of g - min g, with
     /// min g over elements that could press more. Plastic elements below that minimum could press less, which adds
     /// nothing. The others count with the largest gap of them all.
-    pub(super) fn excess(&self, problem: &Problem) -> f64 {
+    pub(crate) fn excess(&self, problem: &Problem) -> f64 {
         let of_elastic = self.mean_gap(problem) - self.min_gap;
         if !self.has_plastic() {
             return of_elastic;
@@ -272,7 +272,7 @@ impl GapSums {
     }
 
     /// The gap of elements in contact: their mean, or zero where the penetration is prescribed.
-    pub(super) fn zero_gap(&self, problem: &Problem) -> f64 {
+    pub(crate) fn zero_gap(&self, problem: &Problem) -> f64 {
         match problem.control {
             Control::MeanPressure(_) if self.n_contact > 0.0 => self.contact_gap / self.n_contact,
             Control::MeanPressure(_) if self.has_plastic() => self.gap_of_plastic(problem),
@@ -294,7 +294,7 @@ impl GapSums {
     }
 
     /// The factor on the pressure that makes its weighted mean gap zero.
-    pub(super) fn scale_to_no_gap(&self) -> Option<f64> {
+    pub(crate) fn scale_to_no_gap(&self) -> Option<f64> {
         let scale = self.pressure_overlap / self.work();
         (scale.is_finite() && self.work() > 0.0).then_some(scale)
     }
@@ -303,7 +303,7 @@ impl GapSums {
     ///
     /// It is the maximum of the deepest overlap, a tenth of the largest gap well inside contact, and the largest gap of
     /// a plastic element. Under penetration control, the mean gap is one more. The cell has room for `n_cell` elements.
-    pub(super) fn error(&self, problem: &Problem, n_cell: f64) -> f64 {
+    pub(crate) fn error(&self, problem: &Problem, n_cell: f64) -> f64 {
         let mean_gap = self.mean_gap(problem);
         let length = problem.reference_length(self.work(), self.load(), n_cell);
         // An exact pressure is exact in any unit, even if it is uniform and U is zero.
@@ -338,7 +338,7 @@ fn smaller(a: f64, b: f64) -> f64 {
 }
 
 /// The positive part of an error. NaN stays, since it is not a small error.
-pub(super) fn positive_part(error: f64) -> f64 {
+pub(crate) fn positive_part(error: f64) -> f64 {
     if error < 0.0 { 0.0 } else { error }
 }
 

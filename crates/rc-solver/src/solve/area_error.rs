@@ -2,7 +2,10 @@
 
 use rc_core::{Grid, HeightField, HeightSource, Observer};
 
-use super::{ContactProblem, Solution, SolveError, SolveParams};
+use crate::problem::contact_problem::ContactProblem;
+use crate::solution::whole::Solution;
+use crate::solve::error::SolveError;
+use crate::solve::params::SolveParams;
 
 /// Elements per shortest wave of the first grid.
 const COARSEST: usize = 4;

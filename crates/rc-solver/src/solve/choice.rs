@@ -6,15 +6,21 @@ use std::sync::Arc;
 
 use rc_core::{Boundary, Grid, HeightField, HeightSource};
 
-use super::memory::{bytes_per_element, check_uniform};
-use super::plan::ChosenMethod;
-use super::shared::Shared;
-use super::{ContactProblem, Plan, SolveError, SolveParams};
-use crate::adaptive::AdaptiveProblem;
-use crate::contract::check_kernel;
-use crate::descent::padded_side;
-use crate::problem::{check_load, check_tolerance};
-use crate::{AdaptiveError, ErrorBound, Estimate, Method, MethodReason};
+use crate::grid::response::padded_side;
+use crate::levels::adaptive::AdaptiveProblem;
+use crate::levels::estimate::Estimate;
+use crate::problem::adaptive_error::AdaptiveError;
+use crate::problem::checked::{check_load, check_tolerance};
+use crate::problem::contact_problem::ContactProblem;
+use crate::problem::contract::check_kernel;
+use crate::problem::method::{Method, MethodReason};
+use crate::problem::tolerance::ErrorBound;
+use crate::solve::error::SolveError;
+use crate::solve::memory::{bytes_per_element, check_uniform};
+use crate::solve::params::SolveParams;
+use crate::solve::plan::ChosenMethod;
+use crate::solve::plan::Plan;
+use crate::solve::shared::Shared;
 
 /// Checks the problem and chooses its method.
 pub(super) fn plan<'a>(

@@ -2,9 +2,9 @@
 
 use rc_core::Boundary;
 
-use super::memory::bytes_per_element;
-use super::plan::{ChosenMethod, Plan};
-use crate::ErrorBound;
+use crate::problem::tolerance::ErrorBound;
+use crate::solve::memory::bytes_per_element;
+use crate::solve::plan::{ChosenMethod, Plan};
 
 /// Processor seconds for each estimated element of the adaptive method, at the default tolerance.
 ///

@@ -4,12 +4,20 @@ use std::sync::Arc;
 
 use rc_core::{Grid, HeightSource, Observer, Operator, Silent};
 
-use super::solution::HowSolved;
-use super::{ContactProblem, Plan, Solution, SolveError, SolveParams, area_error, choice, plan};
-use crate::operator;
-use crate::problem::check_tolerance;
-use crate::solution::Status;
-use crate::{Control, Method, MethodReason};
+use crate::descent::info::Status;
+use crate::grid::solve_with_operator::solve_on_grid;
+use crate::problem::checked::check_tolerance;
+use crate::problem::contact_problem::ContactProblem;
+use crate::problem::control::Control;
+use crate::problem::method::{Method, MethodReason};
+use crate::solution::whole::HowSolved;
+use crate::solution::whole::Solution;
+use crate::solve::area_error;
+use crate::solve::choice;
+use crate::solve::error::SolveError;
+use crate::solve::params::SolveParams;
+use crate::solve::plan;
+use crate::solve::plan::Plan;
 
 impl<'a> ContactProblem<'a> {
     /// Checks the problem and chooses its method, without solving.
@@ -154,7 +162,7 @@ pub fn solve_with_operator<'a>(
     check_tolerance(bound)?;
     let heights = source.heights();
     let limits = params.iteration(bound);
-    let solution = operator::solve_on_grid(&heights, operator, control, &limits, observer)?;
+    let solution = solve_on_grid(&heights, operator, control, &limits, observer)?;
     let how = HowSolved::new(Method::Uniform, MethodReason::OwnOperator, bound, "operator");
     let solution = Solution::with_operator(how, operator, solution, heights.max());
     if solution.status() == Status::NotConverged { Err(plan::not_converged(solution)) } else { Ok(solution) }

@@ -3,8 +3,12 @@
 use rc_core::{Grid, GridError};
 use thiserror::Error;
 
-use super::Solution;
-use crate::{AdaptiveError, Certificate, GaussSeidelError, Method, MethodReason, ProblemError};
+use crate::descent::certificate::Certificate;
+use crate::paper::error::GaussSeidelError;
+use crate::problem::adaptive_error::AdaptiveError;
+use crate::problem::error::ProblemError;
+use crate::problem::method::{Method, MethodReason};
+use crate::solution::whole::Solution;
 
 /// A contact problem that was not solved.
 #[derive(Debug, Error)]

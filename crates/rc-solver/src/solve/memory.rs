@@ -2,9 +2,10 @@
 
 use rc_core::{Boundary, Grid};
 
-use super::SolveError;
-use crate::uniform::FREE_BYTES_PER_ELEMENT;
-use crate::{Method, UNIFORM_BYTES_PER_ELEMENT};
+use crate::levels::uniform::FREE_BYTES_PER_ELEMENT;
+use crate::levels::uniform::UNIFORM_BYTES_PER_ELEMENT;
+use crate::problem::method::Method;
+use crate::solve::error::SolveError;
 
 /// Bytes per element of a method that stores fields on the whole grid.
 pub(super) fn bytes_per_element(boundary: Boundary) -> u64 {

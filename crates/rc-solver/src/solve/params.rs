@@ -1,7 +1,10 @@
 //! Parameters of a solve.
 
-use crate::adaptive::AdaptiveParams;
-use crate::{ErrorBound, GaussSeidelParams, IterationParams, Method, Tolerance};
+use crate::levels::params::AdaptiveParams;
+use crate::paper::params::GaussSeidelParams;
+use crate::problem::method::Method;
+use crate::problem::params::IterationParams;
+use crate::problem::tolerance::{ErrorBound, Tolerance};
 
 /// Accuracy, method and limits of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,12 +75,12 @@ impl SolveParams {
     }
 
     /// The parameters of the iteration.
-    pub(super) fn iteration(&self, bound: ErrorBound) -> IterationParams {
+    pub(crate) fn iteration(&self, bound: ErrorBound) -> IterationParams {
         IterationParams { bound, max_iterations: self.max_iterations }
     }
 
     /// The parameters of the adaptive method.
-    pub(super) fn adaptive(&self, bound: ErrorBound) -> AdaptiveParams {
+    pub(crate) fn adaptive(&self, bound: ErrorBound) -> AdaptiveParams {
         AdaptiveParams {
             solve: self.iteration(bound),
             operator_error: self.operator_error,

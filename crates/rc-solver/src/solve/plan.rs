@@ -5,29 +5,37 @@ use std::sync::Arc;
 use rc_core::{Field, Observer};
 use rc_kernel::PeriodicLove;
 
-use super::memory::{bytes_per_element, check_uniform};
-use super::shared::Shared;
-use super::solution::HowSolved;
-use super::{ContactProblem, Solution, SolveError, SolveParams};
-use crate::adaptive::{AdaptiveProblem, AdaptiveSolution, Unsuitable};
-use crate::gauss_seidel::{HalfSpace, solve_gauss_seidel};
-use crate::solution::{GridSolution, Status};
-use crate::uniform::solve_uniform;
-use crate::{ErrorBound, GaussSeidelError, GaussSeidelParams, Method, MethodReason};
+use crate::descent::info::{GridSolution, Status};
+use crate::levels::adaptive::{AdaptiveProblem, Unsuitable};
+use crate::levels::uniform::solve_uniform;
+use crate::paper::error::GaussSeidelError;
+use crate::paper::half_space::HalfSpace;
+use crate::paper::params::GaussSeidelParams;
+use crate::paper::solve::solve_gauss_seidel;
+use crate::problem::contact_problem::ContactProblem;
+use crate::problem::method::{Method, MethodReason};
+use crate::problem::tolerance::ErrorBound;
+use crate::solution::whole::HowSolved;
+use crate::solution::whole::Solution;
+use crate::solve::error::SolveError;
+use crate::solve::memory::{bytes_per_element, check_uniform};
+use crate::solve::params::SolveParams;
+use crate::solve::shared::Shared;
+use crate::tiles::solution::AdaptiveSolution;
 
 /// A checked contact problem with its method. It is not solved yet.
 pub struct Plan<'a> {
-    pub(super) problem: ContactProblem<'a>,
-    pub(super) params: SolveParams,
+    pub(crate) problem: ContactProblem<'a>,
+    pub(crate) params: SolveParams,
     /// The bound that the certificate must meet.
-    pub(super) bound: ErrorBound,
-    pub(super) chosen: ChosenMethod<'a>,
-    pub(super) reason: MethodReason,
-    pub(super) shared: Arc<Shared<'a>>,
+    pub(crate) bound: ErrorBound,
+    pub(crate) chosen: ChosenMethod<'a>,
+    pub(crate) reason: MethodReason,
+    pub(crate) shared: Arc<Shared<'a>>,
 }
 
 /// A method, and its data at the start.
-pub(super) enum ChosenMethod<'a> {
+pub(crate) enum ChosenMethod<'a> {
     /// The adaptive method. Heights are evaluated as they are needed.
     Adaptive(Box<AdaptiveProblem<'a>>),
     /// The uniform method. All heights will be evaluated.
@@ -133,7 +141,7 @@ fn converged(solution: Solution<'_>) -> Result<Solution<'_>, SolveError> {
 }
 
 /// The error that carries a solution.
-pub(super) fn not_converged(solution: Solution<'_>) -> SolveError {
+pub(crate) fn not_converged(solution: Solution<'_>) -> SolveError {
     SolveError::NotConverged {
         grid: solution.finest_grid(),
         iterations: solution.info().fine_iterations(),

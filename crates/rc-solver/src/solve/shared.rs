@@ -4,13 +4,14 @@ use std::sync::{Arc, OnceLock};
 
 use rc_core::{Boundary, Field, HeightSource};
 
-use crate::AdaptiveError;
-use crate::adaptive::{AdaptiveParams, Ground};
-use crate::once::made;
+use crate::levels::ground::Ground;
+use crate::levels::params::AdaptiveParams;
+use crate::parallel::made;
+use crate::problem::adaptive_error::AdaptiveError;
 
 /// Heights as the methods need them. They are evaluated when the first load needs them.
 #[derive(Default)]
-pub(super) struct Shared<'a> {
+pub(crate) struct Shared<'a> {
     /// Heights of the adaptive method.
     ground: OnceLock<Arc<Ground<'a>>>,
     /// Heights on the whole grid.
@@ -19,7 +20,7 @@ pub(super) struct Shared<'a> {
 
 impl<'a> Shared<'a> {
     /// The heights of `source` as the adaptive method needs them, with this boundary.
-    pub(super) fn ground(
+    pub(crate) fn ground(
         &self,
         source: &HeightSource<'a>,
         boundary: Boundary,
@@ -34,12 +35,12 @@ impl<'a> Shared<'a> {
     }
 
     /// Frees the heights of the adaptive method.
-    pub(super) fn forget_ground(&mut self) {
+    pub(crate) fn forget_ground(&mut self) {
         self.ground.take();
     }
 
     /// The heights of `source` on its whole grid.
-    pub(super) fn heights<'s>(&'s self, source: &'s HeightSource<'a>) -> &'s Field {
+    pub(crate) fn heights<'s>(&'s self, source: &'s HeightSource<'a>) -> &'s Field {
         if let Some(map) = source.map() {
             return map;
         }

@@ -5,6 +5,7 @@ mod gauss_seidel;
 mod hardness;
 mod hardness_of_solids;
 mod observers;
+mod operators;
 mod stops;
 mod uniform;
 

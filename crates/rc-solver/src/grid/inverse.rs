@@ -1,0 +1,39 @@
+//! The approximate inverse of L on a grid.
+//!
+//! It is the inverse symbol between an extension of residuals and its transpose.
+
+use rc_core::Grid;
+use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
+
+use crate::grid::extension::finest::GridExtension;
+use crate::grid::passes::{read_rows, write_rows};
+use crate::parallel::Tasks;
+
+/// The approximate inverse on a periodic grid.
+pub(super) struct Inverse {
+    pub(super) symbol: SymbolTable<f32>,
+    pub(super) extension: GridExtension,
+}
+
+impl Inverse {
+    pub(super) fn new(grid: Grid, symbol: SymbolTable<f32>) -> Self {
+        Self { symbol, extension: GridExtension::new(grid) }
+    }
+
+    /// Applies the inverse to values that are zero where elements are not active.
+    pub(super) fn apply(&mut self, convolution: &mut Convolution<f32>, active: &[bool], values: &mut [f32]) {
+        let Self { symbol, extension } = self;
+        extension.extend(values);
+        let len = BLOCK_ROWS * convolution.grid().nx();
+        let filled = &*extension;
+        write_rows(convolution, &|i, rows| {
+            let here = i * len..i * len + rows.len();
+            rows.copy_from_slice(&values[here.clone()]);
+            filled.fill(i * BLOCK_ROWS, &active[here], rows);
+        });
+        convolution.apply_symbol(symbol);
+        let tasks = Tasks::new(values.chunks_mut(len));
+        read_rows(convolution, &|i, rows| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(rows)));
+        extension.gather(active, values);
+    }
+}

@@ -1,0 +1,150 @@
+//! L on a uniform grid, by Fourier transforms.
+
+use rc_core::{Boundary, Grid, Kernel};
+use rc_fft::{Convolution, SymbolTable};
+
+use crate::descent::layout::BlockLayout;
+use crate::descent::operators::{BlockOperator, LevelOperators, PreconditionedOperator};
+use crate::grid::inverse::Inverse;
+use crate::grid::margin::Margin;
+use crate::grid::passes::{layout, read_rows, write_rows};
+use crate::grid::response::GridResponse;
+
+/// The operators L of `kernel` on `grid`.
+pub(crate) fn uniform_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
+    let response = GridResponse::of(grid, kernel);
+    LevelOperators {
+        corrections: Box::new(UniformCorrections::new(grid, kernel, &response)),
+        fresh: Box::new(SymbolOperator::of(response)),
+    }
+}
+
+/// The operator L of `kernel` on `grid` for a certificate only, without corrections.
+pub(crate) fn certifying_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
+    LevelOperators {
+        corrections: Box::new(NoCorrections(layout(grid))),
+        fresh: Box::new(SymbolOperator::of(GridResponse::of(grid, kernel))),
+    }
+}
+
+/// No corrections, for a solve that was stopped: it takes no step, so only the layout is asked for.
+struct NoCorrections(BlockLayout);
+
+impl BlockOperator<f32> for NoCorrections {
+    fn layout(&self) -> BlockLayout {
+        self.0.clone()
+    }
+
+    fn write(&mut self, _write: &(dyn Fn(usize, &mut [f32]) + Sync)) {}
+
+    fn apply(&mut self) {}
+
+    fn read(&self, _read: &(dyn Fn(usize, &[f32]) + Sync)) {}
+}
+
+impl PreconditionedOperator for NoCorrections {
+    fn set_active(&mut self, _active: &[bool]) {}
+
+    fn precondition(&mut self, _active: &[bool], _values: &mut [f32]) {}
+
+    fn set_mean(&mut self, _eigenvalue: f64) {}
+}
+
+/// L and its approximate inverse, for corrections.
+pub(crate) struct UniformCorrections {
+    /// Convolution of displacements. On periodic cells it serves the approximate inverse too.
+    convolution: Convolution<f32>,
+    displacement: SymbolTable<f32>,
+    inverse: Inverse,
+    /// The margin around heights with free borders.
+    margin: Option<Margin>,
+}
+
+impl UniformCorrections {
+    /// Operators of `kernel` with its `response` on `grid`.
+    pub(crate) fn new(grid: Grid, kernel: &dyn Kernel, response: &GridResponse) -> Self {
+        let margin = (response.boundary == Boundary::Free).then(|| Margin::around(grid));
+        let inverse = match &margin {
+            None => Inverse::new(grid, response.table.inverse(grid)),
+            Some(margin) => Inverse::new(margin.grid(), margin.inverse(kernel)),
+        };
+        let displacement = response.table.map(|value| value as f32);
+        Self { convolution: response.convolution(), displacement, inverse, margin }
+    }
+}
+
+impl BlockOperator<f32> for UniformCorrections {
+    fn layout(&self) -> BlockLayout {
+        layout(self.convolution.grid())
+    }
+
+    fn write(&mut self, write: &(dyn Fn(usize, &mut [f32]) + Sync)) {
+        write_rows(&mut self.convolution, write);
+    }
+
+    fn apply(&mut self) {
+        self.convolution.apply_symbol(&self.displacement);
+    }
+
+    fn read(&self, read: &(dyn Fn(usize, &[f32]) + Sync)) {
+        read_rows(&self.convolution, read);
+    }
+}
+
+impl PreconditionedOperator for UniformCorrections {
+    fn set_active(&mut self, active: &[bool]) {
+        let active = self.margin.as_mut().map_or(active, |margin| margin.set_active(active));
+        self.inverse.extension.set_active(active);
+    }
+
+    fn precondition(&mut self, active: &[bool], values: &mut [f32]) {
+        match &mut self.margin {
+            None => self.inverse.apply(&mut self.convolution, active, values),
+            Some(margin) => margin.apply(&mut self.inverse, values),
+        }
+    }
+
+    fn set_mean(&mut self, eigenvalue: f64) {
+        let grid = self.convolution.grid();
+        let around = self.margin.as_ref().map_or(grid, Margin::grid);
+        // The grid gets the whole load on the larger grid.
+        let part = grid.len() as f64 / around.len() as f64;
+        self.inverse.symbol.set_mean((part * eigenvalue / around.len() as f64) as f32);
+    }
+}
+
+/// An operator with this symbol, in double precision.
+pub(crate) struct SymbolOperator {
+    convolution: Convolution<f64>,
+    symbol: SymbolTable<f64>,
+}
+
+impl SymbolOperator {
+    /// An operator on `grid`. `symbol` is the table of its waves.
+    pub(crate) fn new(grid: Grid, symbol: SymbolTable<f64>) -> Self {
+        Self { convolution: Convolution::new(grid), symbol }
+    }
+
+    /// The operator L of a grid.
+    pub(crate) fn of(response: GridResponse) -> Self {
+        Self { convolution: response.convolution(), symbol: response.table }
+    }
+}
+
+impl BlockOperator<f64> for SymbolOperator {
+    fn layout(&self) -> BlockLayout {
+        layout(self.convolution.grid())
+    }
+
+    fn write(&mut self, write: &(dyn Fn(usize, &mut [f64]) + Sync)) {
+        write_rows(&mut self.convolution, write);
+    }
+
+    fn apply(&mut self) {
+        self.convolution.apply_symbol(&self.symbol);
+    }
+
+    fn read(&self, read: &(dyn Fn(usize, &[f64]) + Sync)) {
+        read_rows(&self.convolution, read);
+    }
+}

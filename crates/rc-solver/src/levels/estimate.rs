@@ -1,0 +1,131 @@
+//! The expected cost of a scene, before it is solved.
+
+use rc_core::{Boundary, Field};
+
+use crate::problem::checked::Problem;
+use crate::problem::control::Control;
+use crate::tiles::heights::on_demand::Heights;
+use crate::tiles::memory::base_bytes;
+
+/// Ratio of the contact area to σ0/(E* · rms slope) at low loads.
+///
+/// The literature has 1.6 to 2.5, and this solver 2.0 to 2.2.
+const PROPORTIONALITY: f64 = 2.1;
+
+/// Ratio of the area of the tiles of a contact to the contact area.
+///
+/// Measured at 1 % to 60 % contact, from λ_min/32.
+const TILES_PER_AREA: f64 = 1.9;
+
+/// Bytes for each cell of a tile where contact is possible, at the peak.
+const BYTES_PER_CELL: f64 = 80.0;
+
+/// Bytes that each border level adds to a cell, relative to one without.
+///
+/// They are for the larger cells that every level reaches beyond its own. `docs/measurements-adaptive.md` has the
+/// measured bytes.
+const MORE_BYTES_PER_BORDER_LEVEL: f64 = 0.9;
+
+/// Time that each border level adds to a cell, relative to one without.
+///
+/// `docs/measurements-adaptive.md` has the measured times.
+const MORE_WORK_PER_BORDER_LEVEL: f64 = 0.8;
+
+/// Factor by which one more border level multiplies the cells of tiles.
+///
+/// Edges alone would give 2. `docs/measurements-adaptive.md` has the measured factors.
+const GROWTH_PER_BORDER_LEVEL: f64 = 2.6;
+
+/// Bytes for each place of the smallest elements, used or not.
+///
+/// They are for the tables that find tiles, of a few meshes at a time.
+const BYTES_PER_PLACE: f64 = 0.02;
+
+/// Mean pressure of a flat patch with free borders at a penetration of 1, in E*/λ.
+///
+/// It is π times the capacity of a square. Rough patches of the same penetration bear less.
+const LOAD_PER_DEPTH: f64 = 1.152;
+
+/// An estimate of area, time and memory, from only the surface and the load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Estimate {
+    /// Contact area relative to the nominal area.
+    pub area_fraction: f64,
+    /// Part of the cell in tiles where contact is possible, on the grid.
+    pub tile_fraction: f64,
+    /// Number of cells of these tiles, including those of border levels.
+    pub cells: f64,
+    /// Work on these cells. Its unit is the work on a cell of a mesh without border levels.
+    pub work: f64,
+    /// Memory of the adaptive method, in bytes.
+    pub adaptive_bytes: f64,
+}
+
+impl Estimate {
+    /// Maximum contact area for the adaptive method.
+    ///
+    /// Above it the uniform grid is faster. `docs/measurements-adaptive.md` has the times by contact fraction.
+    pub(crate) const GREATEST_ADAPTIVE_AREA: f64 = 0.35;
+
+    /// Maximum fraction of the cell in tiles near contact for the adaptive method.
+    ///
+    /// Above it the uniform grid is faster. The base grid finds this fraction. The limit was measured on 27 scenes
+    /// (docs/measurements-adaptive.md).
+    pub(crate) const GREATEST_TILE_FRACTION: f64 = 0.35;
+
+    /// `period` has the elements of the base grid that operators work on.
+    pub(crate) fn new(heights: &Heights<'_>, border_level: usize, problem: &Problem, period: [usize; 2]) -> Self {
+        let (base, boundary) = (heights.base(), problem.support.boundary);
+        let of_load = |pressure: f64| PROPORTIONALITY * pressure / rms_slope(base, boundary);
+        let area = match problem.control {
+            Control::MeanPressure(pressure) => of_load(pressure).max(pressure / problem.hardness),
+            // The undeformed surfaces overlap on a larger area than they touch on. The penetration of a patch may be
+            // larger than all its heights.
+            Control::Penetration(penetration) => {
+                let overlap = overlap(base, heights.extremes().greatest - penetration);
+                let is_free = boundary == Boundary::Free && problem.hardness.is_infinite();
+                if is_free { overlap.min(of_load(LOAD_PER_DEPTH * penetration)) } else { overlap }
+            }
+        };
+        // A flat surface, or one with a single element, touches everywhere.
+        let area_fraction = if area.is_finite() { area.min(1.0) } else { 1.0 };
+        // Contacts of a few cells take a whole tile each.
+        let tile_fraction = (TILES_PER_AREA * area_fraction + 0.005).min(1.0);
+        let n_finest = heights.ladder().finest().len() as f64;
+        let n_cells = tile_fraction * n_finest * (0.25 * GROWTH_PER_BORDER_LEVEL).powi(border_level as i32);
+        let with_borders = |more: f64| n_cells * (1.0 + more * border_level as f64);
+        let cell_bytes = BYTES_PER_CELL * with_borders(MORE_BYTES_PER_BORDER_LEVEL);
+        Self {
+            area_fraction,
+            tile_fraction,
+            cells: n_cells,
+            work: with_borders(MORE_WORK_PER_BORDER_LEVEL),
+            adaptive_bytes: cell_bytes + BYTES_PER_PLACE * n_finest + base_bytes(period),
+        }
+    }
+}
+
+/// Isotropic rms slope from differences of neighbours, accurate enough for an estimate.
+fn rms_slope(heights: &Field, boundary: Boundary) -> f64 {
+    let (nx, ny) = (heights.grid().nx(), heights.grid().ny());
+    let (along_x, along_y) = (nx as f64, ny as f64 / heights.grid().cell_ratio());
+    let mut sum = 0.0;
+    // Opposite free borders are no neighbours.
+    let [columns, rows] = match boundary {
+        Boundary::Periodic => [nx, ny],
+        Boundary::Free => [nx - 1, ny - 1],
+    };
+    for iy in 0..rows {
+        let (row, next) = (heights.row(iy), heights.row((iy + 1) % ny));
+        for ix in 0..columns {
+            let (dx, dy) = (row[(ix + 1) % nx] - row[ix], next[ix] - row[ix]);
+            sum += (dx * along_x).powi(2) + (dy * along_y).powi(2);
+        }
+    }
+    (sum / heights.grid().len() as f64).sqrt()
+}
+
+/// Part of the surface above `level`.
+fn overlap(heights: &Field, level: f64) -> f64 {
+    heights.values().iter().filter(|&&h| h > level).count() as f64 / heights.grid().len() as f64
+}

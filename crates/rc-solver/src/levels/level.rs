@@ -1,0 +1,77 @@
+//! A level on tiles that is not the finest. It prepares the next one.
+
+use std::sync::Arc;
+
+use rc_core::{Grid, Observer};
+use rc_quadtree::ContactFields;
+
+use crate::descent::info::LevelInfo;
+use crate::descent::operators::LevelOperators;
+use crate::descent::outcome::Outcome;
+use crate::descent::run::{DescentObserver, Goal};
+use crate::descent::state::{Descent, Start};
+use crate::levels::setup::Setup;
+use crate::tiles::element_heights::element_heights;
+use crate::tiles::mesh::Mesh;
+use crate::tiles::operator::corrections::TileCorrections;
+use crate::tiles::prolongation::MeshStart;
+
+/// A solved level.
+pub(crate) struct SolvedLevel {
+    pub(crate) elements: Mesh,
+    pub(crate) pressure: Vec<f64>,
+    pub(crate) gap: Vec<f64>,
+    pub(crate) outcome: Outcome,
+    /// Number of elements whose gap was computed.
+    pub(crate) evaluated: usize,
+    /// Number of elements of the smallest size that would cover these elements.
+    ///
+    /// On the finest level, all others are proven to be out of contact.
+    pub(crate) covered: usize,
+    pub(crate) info: LevelInfo,
+}
+
+impl SolvedLevel {
+    /// The fields that the refinement rule needs.
+    pub(crate) fn fields(&self) -> ContactFields<'_> {
+        ContactFields {
+            elements: self.elements.elements(),
+            pressure: &self.pressure,
+            beyond: 0.0,
+            gap: &self.gap,
+            contact_gap: self.outcome.contact_gap,
+        }
+    }
+}
+
+/// Adds the work that `more` counts.
+pub(crate) fn add_work(info: &mut LevelInfo, more: &LevelInfo) {
+    info.iterations += more.iterations;
+    info.operator_applications += more.operator_applications;
+    info.preconditioner_applications += more.preconditioner_applications;
+}
+
+/// Solves only on the elements of the prolonged pressure.
+pub(crate) fn solve_coarse_level(
+    setup: &Setup<'_>,
+    grid: Grid,
+    start: MeshStart,
+    tolerance: f64,
+    observer: &dyn Observer,
+) -> SolvedLevel {
+    let hierarchy = setup.hierarchy(&start.elements, setup.quick.reach());
+    let response = setup.quick.tables(grid);
+    let mut preconditioner = setup.preconditioner.tables(grid);
+    let operators = LevelOperators {
+        corrections: Box::new(TileCorrections::new(Arc::clone(&hierarchy), &response, &mut preconditioner)),
+        fresh: Box::new(setup.quick_operator(hierarchy, &response, &start)),
+    };
+    let MeshStart { elements, pressure } = start;
+    let heights = element_heights(setup.heights, &elements, None);
+    let mut descent = Descent::new(&heights, grid, operators, &setup.problem, Start::Pressure(pressure));
+    let goal = Goal { tolerance, max_iterations: setup.params.max_iterations, certify: None };
+    let outcome = descent.run(goal, &DescentObserver { observer, mesh: &elements });
+    let info = descent.info();
+    let (pressure, gap) = descent.into_vectors(0.0);
+    SolvedLevel { evaluated: elements.len(), covered: elements.n_finest(), elements, pressure, gap, outcome, info }
+}

@@ -1,0 +1,59 @@
+//! The contact problem on nested uniform grids.
+//!
+//! Preconditioned projected conjugate gradients solve each grid.
+
+use rc_core::{Boundary, Field, Kernel, Observer};
+
+use crate::descent::info::GridSolution;
+use crate::grid::coarser::nest_without_pits;
+use crate::grid::full_contact;
+use crate::levels::nested_grids::FinestGrid;
+use crate::levels::nested_grids::NestedGrids;
+use crate::levels::nested_grids::SMALLEST_SIDE;
+use crate::problem::checked::{Load, Problem};
+use crate::problem::error::ProblemError;
+use crate::problem::params::IterationParams;
+use crate::problem::support::Support;
+
+/// Bytes for each element that the uniform method is assumed to need, heights included.
+///
+/// The number is for its peak. 58 to 60 were measured at 2048² and 4096² with generated heights.
+pub const UNIFORM_BYTES_PER_ELEMENT: u64 = 80;
+
+/// Bytes for each element of heights with free borders.
+///
+/// Their transforms are padded to twice as many elements along both axes, or a few more.
+pub(crate) const FREE_BYTES_PER_ELEMENT: u64 = 180;
+
+/// Solves the contact problem on the grid of `heights` (in λ, any mean).
+///
+/// Full contact of a periodic cell is returned exactly and without iteration. Otherwise coarser grids, each with about
+/// half the elements per side, prepare the start on the next. On each grid, preconditioned conjugate gradients find the
+/// pressure. The preconditioner is the inverse symbol between two extensions of residuals (see
+/// `docs/uniform-solver.md`, and `docs/measurements-uniform.md` for measurements). The certificate comes from a fresh
+/// application of L, in double precision, on the returned pressure.
+///
+/// The result is bitwise the same for any number of threads.
+///
+/// # Errors
+/// [`ProblemError`].
+pub(crate) fn solve_uniform(
+    heights: &Field,
+    kernel: &dyn Kernel,
+    load: impl Into<Load>,
+    params: &IterationParams,
+    observer: &dyn Observer,
+) -> Result<GridSolution, ProblemError> {
+    let problem = Problem::check_on(Support::of(kernel, heights.grid()), heights, load, params)?;
+    let boundary = problem.support.boundary;
+    let coarser = nest_without_pits(heights, SMALLEST_SIDE, boundary);
+    if boundary == Boundary::Periodic
+        && let Some(mean_pressure) = full_contact::mean_pressure(&problem)
+        && let Some(solution) = full_contact::solve((heights, &coarser), kernel, mean_pressure, &problem, params.bound)
+    {
+        return Ok(solution);
+    }
+    let levels = NestedGrids { kernel, problem: &problem, params: *params, n_above: 0, observer };
+    let FinestGrid { descent, outcome, levels, coarser } = levels.solve_from(&coarser, heights);
+    Ok(descent.into_solution(&outcome, levels, coarser))
+}

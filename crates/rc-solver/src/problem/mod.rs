@@ -1,0 +1,13 @@
+//! What is asked: bodies, surface, load, bounds of the pressure, tolerance, method, and what is refused.
+
+pub(crate) mod adaptive_error;
+pub(crate) mod checked;
+pub(crate) mod contact_problem;
+pub(crate) mod contract;
+pub(crate) mod control;
+pub(crate) mod error;
+pub(crate) mod kernel;
+pub(crate) mod method;
+pub(crate) mod params;
+pub(crate) mod support;
+pub(crate) mod tolerance;

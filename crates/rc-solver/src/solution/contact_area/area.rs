@@ -1,0 +1,362 @@
+//! The contact area, its edges and its error.
+
+use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
+
+use crate::solution::contact_area::edge_sums::EdgeSums;
+use rayon::prelude::*;
+use rc_core::{Boundary, EdgeBias, Field, Grid};
+
+/// Contact area relative to the nominal area, with its edges and its error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactArea {
+    /// Fraction of elements with p > 0.
+    ///
+    /// It converges only at first order in the element size, from above.
+    pub cells: f64,
+    /// Number of edges of smallest elements between elements in and out of contact.
+    pub perimeter_edges: usize,
+    /// Length of the edges of all contacts, in λ, without the steps of the elements.
+    ///
+    /// It follows from Crofton's formula for eight directions. For a straight edge, the error is at most 5 %. In the
+    /// mean over directions, it is zero.
+    pub perimeter: f64,
+    /// Number of contacts minus the number of holes in them.
+    ///
+    /// Where elements touch only across a corner, half of them count as joined.
+    pub euler_number: f64,
+    /// Sum over edges of the deviation from the law of an edge.
+    ///
+    /// [`EdgeBias::per_deviation`] defines the deviation, which is that of the gap outside.
+    pub gap_deviation: f64,
+    /// Part of ⟨p²⟩ that the mean over elements misses, in E*².
+    ///
+    /// See [`EdgeBias::per_square`].
+    pub missing_square: f64,
+    /// Best estimate of the area, from the edges between the centres of elements.
+    pub fraction: f64,
+    /// Estimated error of `fraction`. The true error is smaller in 95 % of scenes.
+    ///
+    /// `cargo xtask accuracy` measures this. The estimate comes from the number of edges, their directions, and the
+    /// difference to the count. It does not cover slopes that jump, see `docs/accuracy.md`.
+    pub error: f64,
+    /// Sums at edges for the error bars of pressure and gap.
+    pub(crate) rim: Rim,
+}
+
+/// Sums over the elements at the edges of contacts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rim {
+    /// Σ over edges of the area of an element, relative to the nominal area.
+    pub(crate) area: f64,
+    /// Σ over edges of an element's area times the squared pressure inside, in E*².
+    ///
+    /// The area is relative to the nominal area.
+    pub(crate) squares: f64,
+    /// Number of edges that scatter independently.
+    ///
+    /// Edges in a row with the same place between elements count as one.
+    pub(crate) independent_edges: f64,
+    /// Σ of (side / smallest side)² over the sizes of larger elements in contact.
+    pub(crate) larger: f64,
+    /// Side of the smallest elements, in λ.
+    pub(crate) side: f64,
+    /// Size of [`EdgeBias::per_square`]: the difference of the kernel's elements to the half-space at edges.
+    pub(crate) kernel: f64,
+    /// Squared pressure at free borders, in E*² λ.
+    ///
+    /// It is the sum of p² a s over elements along a border, with their area a and their side s across the border. The
+    /// area is relative to the nominal area. The sum is zero where contact does not reach a free border.
+    pub(crate) at_border: f64,
+}
+
+/// 95 % error of the area, in elements, for one independent edge.
+///
+/// It grows with the root of the number of independent edges, and is the same on every mesh.
+const SCATTER: f64 = 0.17;
+
+/// 95 % error of the bias, relative to (count - `fraction`)² / `fraction`.
+///
+/// It is of second order. In scenes with very many edges it is the error.
+const ERROR_OF_TERM: f64 = 0.4;
+
+/// 95 % error for each diagonal above or below the expected number [`DIAGONALS`].
+///
+/// The bias is subtracted as for edges in all directions.
+const ERROR_OF_DIRECTIONS: f64 = 0.15;
+
+/// Neighbours across a corner for each edge, in the mean over the directions of edges.
+///
+/// There are two where an edge is along the elements, and one where it is at 45 degrees to them.
+const DIAGONALS: f64 = SQRT_2;
+
+/// 95 % error of the area from the tolerance of the solve.
+///
+/// It is relative to the area and to the square of the energy error.
+const ERROR_OF_SOLVE: f64 = 1.0;
+
+impl ContactArea {
+    /// The contact area of `pressure` and `gap` on a uniform grid.
+    ///
+    /// E* = 1 and λ = 1. The gap is zero in contact. `bias` is that of the kernel of the solution. The function makes
+    /// one pass, and takes time only for elements in contact.
+    ///
+    /// # Panics
+    /// When `pressure` and `gap` are not on the same grid.
+    #[must_use]
+    pub fn of(pressure: &Field, gap: &Field, bias: EdgeBias) -> Self {
+        assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
+        Self::with_boundary(pressure, gap, bias, Boundary::Periodic)
+    }
+
+    /// The contact area, as [`ContactArea::of`], for heights with this `boundary`.
+    ///
+    /// The heights end at a free border. The border is not counted as an edge of the contact where contact reaches it.
+    ///
+    /// # Panics
+    /// As [`ContactArea::of`].
+    #[must_use]
+    pub fn with_boundary(pressure: &Field, gap: &Field, bias: EdgeBias, boundary: Boundary) -> Self {
+        assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
+        Self::of_hard([pressure, gap], f64::INFINITY, bias, boundary)
+    }
+
+    /// The contact area where pressures are at most the `hardness`.
+    ///
+    /// The gap of plastic elements is below the gap of contact.
+    pub(crate) fn of_hard([pressure, gap]: [&Field; 2], hardness: f64, bias: EdgeBias, boundary: Boundary) -> Self {
+        let grid = pressure.grid();
+        let values = [pressure.values(), gap.values()];
+        let at = |place: [usize; 2]| around(values, [grid.nx(), grid.ny()], place, boundary);
+        let mut sums = sums_of_rows(grid, hardness, |i| values[0][i] > 0.0, at);
+        if boundary == Boundary::Free {
+            add_borders(&mut sums, pressure, hardness);
+        }
+        Self::from_sums(&[sums], grid, bias)
+    }
+
+    /// The contact area from sums over elements of one size each.
+    ///
+    /// The smallest elements, those of the grid `finest`, come first. Then come those twice as large, and so on.
+    pub(crate) fn from_sums(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> Self {
+        let (area, scatter) = Self::with_scatter(sums, finest, bias);
+        let error = scatter.error(area.cells - area.fraction, area.fraction.max(0.1 * area.cells));
+        Self { error, ..area }
+    }
+
+    /// The area without its error, and the data that the error follows from.
+    pub(crate) fn with_scatter(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> (Self, Scatter) {
+        let (smallest, sides) = (1.0 / finest.len() as f64, finest.spacing().into());
+        let [width, height]: [f64; 2] = sides;
+        let rim = Rim {
+            area: 0.0,
+            squares: 0.0,
+            independent_edges: 0.0,
+            larger: 0.0,
+            side: (width * height).sqrt(),
+            kernel: bias.per_square.abs(),
+            at_border: 0.0,
+        };
+        let mut area = Self {
+            cells: 0.0,
+            perimeter_edges: 0,
+            perimeter: 0.0,
+            euler_number: 0.0,
+            gap_deviation: 0.0,
+            missing_square: 0.0,
+            fraction: 0.0,
+            error: 0.0,
+            rim,
+        };
+        let (mut scatter, mut excess_diagonals) = (0.0, 0.0);
+        for (coarser, sums) in sums.iter().enumerate() {
+            let size = smallest * f64::from(1_u32 << (2 * coarser));
+            let (edges, contacts) = (sums.edges as f64, 0.25 * sums.turns as f64);
+            let counted = sums.n_contact as f64;
+            let [shift, deviation] = sums.of_all();
+            // The biases are those of edges at which the pressure is a square root.
+            let (smooth, of_contacts) = (sums.smooth() as f64, contacts * sums.smooth() as f64 / edges.max(1.0));
+            let shift =
+                0.5 * shift - bias.per_edge * smooth - bias.per_contact * of_contacts - bias.per_deviation * deviation;
+            area.cells += size * counted;
+            area.fraction += size * (counted + shift);
+            let together = edges_that_scatter_together(sums);
+            scatter += (SCATTER * size).powi(2) * edges * together;
+            area.rim.independent_edges += edges / together;
+            excess_diagonals += size * (sums.diagonals as f64 - DIAGONALS * edges);
+            area.euler_number += contacts;
+            area.gap_deviation += deviation;
+            area.missing_square += size * bias.per_square * sums.squares;
+            area.rim.area += size * edges;
+            area.rim.squares += size * sums.squares;
+            area.rim.at_border += size * sums.at_border;
+            if coarser > 0 && sums.n_contact > 0 {
+                area.rim.larger += f64::from(1_u32 << (2 * coarser));
+            }
+            area.perimeter_edges += sums.edges << coarser;
+            area.perimeter += length(sums, sides.map(|side| side * f64::from(1_u32 << coarser)));
+        }
+        area.fraction = area.fraction.clamp(0.0, 1.0);
+        (area, Scatter { of_edges: scatter.sqrt(), of_directions: ERROR_OF_DIRECTIONS * excess_diagonals })
+    }
+
+    /// Adds the error that the tolerance of the solve leaves.
+    ///
+    /// `energy_error` is √(G/U), the relative error of the pressure in the energy norm, below a third. The error of the
+    /// area is of its square.
+    pub(crate) fn with_energy_error(self, energy_error: f64) -> Self {
+        Self { error: self.error.hypot(ERROR_OF_SOLVE * energy_error.powi(2) * self.fraction), ..self }
+    }
+
+    /// Ratio of `error` to `fraction`. It is 0 without contact.
+    #[must_use]
+    pub fn relative_error(&self) -> f64 {
+        if self.fraction > 0.0 { self.error / self.fraction } else { 0.0 }
+    }
+}
+
+/// Sums over the elements of a grid that are in contact.
+///
+/// `at` gives pressure and gap around each place. The gap of contact is subtracted from the gap.
+pub(crate) fn sums_of_rows<A: Fn(isize, isize) -> [f64; 2]>(
+    grid: Grid,
+    hardness: f64,
+    is_in_contact: impl Fn(usize) -> bool + Sync,
+    at: impl Fn([usize; 2]) -> A + Sync,
+) -> EdgeSums {
+    let (nx, sides) = (grid.nx(), grid.spacing().into());
+    let row_sums = |iy: usize| {
+        let mut sums = EdgeSums::default();
+        for ix in (0..nx).filter(|ix| is_in_contact(iy * nx + ix)) {
+            sums.add(sides, hardness, &at([ix, iy]));
+        }
+        sums
+    };
+    let rows: Vec<EdgeSums> = (0..grid.ny()).into_par_iter().map(row_sums).collect();
+    rows.into_iter().fold(EdgeSums::default(), |a, b| a + b)
+}
+
+/// Adds the pressures along the borders of a grid.
+fn add_borders(sums: &mut EdgeSums, pressure: &Field, hardness: f64) {
+    let grid = pressure.grid();
+    let (extent, sides) = ([grid.nx(), grid.ny()], grid.spacing().into());
+    let [nx, ny] = extent;
+    let is_border = |iy: usize| iy == 0 || iy + 1 == ny;
+    for iy in 0..ny {
+        // Of a row inside, only the first and the last element.
+        for ix in (0..nx).step_by(if is_border(iy) { 1 } else { (nx - 1).max(1) }) {
+            sums.add_at_border(pressure.at(ix, iy), hardness, [[ix, iy], extent], sides);
+        }
+    }
+}
+
+/// The data that the error of an area follows from.
+pub(crate) struct Scatter {
+    of_edges: f64,
+    of_directions: f64,
+}
+
+impl Scatter {
+    /// The error of an area that differs from the count by `term`.
+    ///
+    /// Contacts of single elements may have no area at all. `size` is therefore not only the area. It is at least a
+    /// part of the count.
+    pub(crate) fn error(&self, term: f64, size: f64) -> f64 {
+        let of_term = ERROR_OF_TERM * term.powi(2) / size.max(f64::MIN_POSITIVE);
+        self.of_edges.hypot(of_term).hypot(self.of_directions).min(1.0)
+    }
+}
+
+/// Number of edges in a row with about the same place between elements.
+///
+/// It is 1 for edges in all directions. For edges along the elements it is the number of all edges. An edge has two
+/// diagonals if its neighbour along the contact is in the same row or column, and one at a step.
+fn edges_that_scatter_together(sums: &EdgeSums) -> f64 {
+    let edges = sums.edges.max(1) as f64;
+    let steps = (2.0 - sums.diagonals as f64 / edges).max(f64::MIN_POSITIVE);
+    ((2.0 - DIAGONALS) / steps).min(edges).max(1.0)
+}
+
+/// Length of all edges of elements with these sides.
+///
+/// It follows from Crofton's formula, for eight directions on squares and for four on rectangles.
+fn length(sums: &EdgeSums, sides: [f64; 2]) -> f64 {
+    let (along_x, along_y) = (sums.along_x as f64, (sums.edges - sums.along_x) as f64);
+    let [x, y] = sides;
+    if are_squares(sides) {
+        PI / 8.0 * (x * y).sqrt() * (along_x + along_y + FRAC_1_SQRT_2 * sums.diagonals as f64)
+    } else {
+        PI / 4.0 * (y * along_x + x * along_y)
+    }
+}
+
+/// Whether elements are squares, up to rounding.
+fn are_squares([x, y]: [f64; 2]) -> bool {
+    (x / y - 1.0).abs() < 1e-6
+}
+
+/// Pressure and gap at places around an element of a grid.
+///
+/// Beyond a free border they are the values beside the border.
+pub(crate) fn around(
+    [pressure, gap]: [&[f64]; 2],
+    [nx, ny]: [usize; 2],
+    [ix, iy]: [usize; 2],
+    boundary: Boundary,
+) -> impl Fn(isize, isize) -> [f64; 2] {
+    let place = move |i: usize, d: isize, n: usize| match boundary {
+        Boundary::Periodic => (i + n).wrapping_add_signed(d) % n,
+        Boundary::Free => i.saturating_add_signed(d).min(n - 1),
+    };
+    move |dx, dy| {
+        let place = place(iy, dy, ny) * nx + place(ix, dx, nx);
+        [pressure[place], gap[place]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sums of the edge of a half plane, in a cell of 64 elements.
+    ///
+    /// The edge has this slope against the rows.
+    fn sums_of_edge(slope: f64) -> EdgeSums {
+        let mut sums = EdgeSums::default();
+        let at = |x: isize, y: isize| if (y as f64) < slope * x as f64 + 0.5 { [1.0, 0.0] } else { [0.0, 1.0] };
+        for x in 0..64 {
+            for y in -2..66 {
+                if at(x, y)[0] > 0.0 {
+                    sums.add([1.0 / 64.0; 2], f64::INFINITY, &|dx, dy| at(x + dx, y + dy));
+                }
+            }
+        }
+        sums
+    }
+
+    #[test]
+    fn edges_along_the_elements_scatter_together_and_oblique_ones_do_not() {
+        let along = sums_of_edge(0.0);
+        assert_eq!((along.edges, along.diagonals), (64, 128));
+        assert!((edges_that_scatter_together(&along) - 64.0).abs() < 1e-9);
+        let oblique = sums_of_edge(1.0);
+        assert!((edges_that_scatter_together(&oblique) - 1.0).abs() < 1e-9, "{oblique:?}");
+        let gentle = edges_that_scatter_together(&sums_of_edge(0.1));
+        assert!((2.0..20.0).contains(&gentle), "{gentle}");
+        assert!((edges_that_scatter_together(&EdgeSums::default()) - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn holes_are_counted_against_contacts() {
+        let grid = Grid::square(32).expect("a grid");
+        let contacts = |inside: fn(f64, f64) -> bool| {
+            let pressure = Field::from_fn(grid, |at| if inside(at.x, at.y) { 1.0 } else { 0.0 });
+            ContactArea::of(&pressure, &Field::zeros(grid), EdgeBias::default()).euler_number
+        };
+        let disc = contacts(|x, y| (x - 0.5).hypot(y - 0.5) < 0.3);
+        let ring = contacts(|x, y| (0.15..0.3).contains(&(x - 0.5).hypot(y - 0.5)));
+        let pair = contacts(|x, y| ((x - 0.5).abs() - 0.25).hypot(y - 0.5) < 0.15);
+        for (name, found, expected) in [("disc", disc, 1.0), ("ring", ring, 0.0), ("pair of discs", pair, 2.0)] {
+            assert!((found - expected).abs() < 1e-12, "{name}: {found}");
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Elements of all ranks, one after the other.
+
+use rc_comm::{Packed, Ranks};
+use rc_core::DVec2;
+
+use crate::solution::contact_element::ContactElement;
+
+/// Number of elements in a message.
+const AT_ONCE: usize = 1 << 16;
+
+/// Hands the elements of all ranks to `take` on the first rank.
+///
+/// The order is that of ranks. All ranks call this together.
+pub(super) fn each_of_ranks<E>(
+    mut own: impl Iterator<Item = ContactElement>,
+    ranks: &Ranks,
+    mut take: impl FnMut(ContactElement) -> Result<(), E>,
+) -> Result<(), E> {
+    if ranks.rank() == 0 {
+        own.try_for_each(&mut take)?;
+        for other in 1..ranks.size() {
+            // The last message is the one that is not full.
+            loop {
+                let message = ranks.exchange(Vec::new(), &[other]).into_iter().flatten().collect::<Vec<u8>>();
+                let values = f64::unpack_all(&message);
+                let elements = values.as_chunks::<4>().0;
+                for &[x, y, side, pressure] in elements {
+                    take(ContactElement { centre: DVec2::new(x, y), side, pressure })?;
+                }
+                if elements.len() < AT_ONCE {
+                    break;
+                }
+            }
+        }
+        return Ok(());
+    }
+    loop {
+        let values: Vec<f64> = own
+            .by_ref()
+            .take(AT_ONCE)
+            .flat_map(|ContactElement { centre, side, pressure }| [centre.x, centre.y, side, pressure])
+            .collect();
+        let mut bytes = Vec::new();
+        f64::pack(&values, &mut bytes);
+        let _ = ranks.exchange(vec![(0, bytes)], &[]);
+        if values.len() < 4 * AT_ONCE {
+            return Ok(());
+        }
+    }
+}

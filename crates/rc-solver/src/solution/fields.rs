@@ -1,0 +1,165 @@
+//! The fields of a solution and their rows.
+
+use std::convert::Infallible;
+
+use rc_core::{Field, Grid};
+
+use crate::solution::gap_part::GapPart;
+use crate::solution::whole::{Pressures, Solution};
+use crate::tiles::bands::{Receiver, Rows};
+
+impl Solution<'_> {
+    /// The pressure on the grid, in E*, ≥ 0.
+    ///
+    /// Where elements are smaller than those of the grid (at a border level), it is their mean.
+    #[must_use]
+    pub fn pressure(&self) -> &Field {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } => &solution.pressure,
+            Pressures::Tiles { .. } => {
+                self.pressure.get_or_init(|| self.collect(self.grid(), |take| self.pressure_rows(take)))
+            }
+        }
+    }
+
+    /// The gap on the grid, in λ, with its pressure-weighted mean at zero.
+    ///
+    /// It is zero in contact within the tolerance. If a hardness is set, it is the gap after plastic flow.
+    #[must_use]
+    pub fn gap(&self) -> &Field {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } if self.how.hardness.is_infinite() => &solution.gap,
+            _ => self.gap.get_or_init(|| self.collect(self.grid(), |take| self.gap_rows(take))),
+        }
+    }
+
+    /// The gap before plastic flow, on the grid of the smallest elements, in λ.
+    ///
+    /// It is shifted like [`Solution::gap`], and negative where plastic flow removed an overlap. `None` without a
+    /// border level, because the smallest elements are then those of [`Solution::grid`]. Each call takes one
+    /// application of L on the grid of the smallest elements.
+    #[must_use]
+    pub fn finest_gap(&self) -> Option<Field> {
+        match &self.pressures {
+            Pressures::Tiles { solution, problem } if self.finest_grid() != self.grid() => {
+                Some(self.collect(self.finest_grid(), |take| {
+                    problem.gap_rows(solution, GapPart::Both, Rows::finest(), take)
+                }))
+            }
+            _ => None,
+        }
+    }
+
+    /// The overlap that plastic flow has removed, on the grid, in λ, ≥ 0.
+    ///
+    /// It is zero where the pressure is below the hardness, and everywhere without a hardness.
+    #[must_use]
+    pub fn plastic_gap(&self) -> &Field {
+        self.plastic_gap.get_or_init(|| self.collect(self.grid(), |take| self.plastic_gap_rows(take)))
+    }
+
+    /// The displacement v on the grid, in λ. Its mean is zero on the periodic half-space.
+    ///
+    /// The first call takes one application of L.
+    #[must_use]
+    pub fn displacement(&self) -> &Field {
+        self.displacement.get_or_init(|| match &self.pressures {
+            Pressures::Grid { solution, response } => response.displacement(&solution.pressure),
+            Pressures::Tiles { solution, problem } => {
+                self.collect(self.grid(), |take| problem.displacement_rows(solution, Receiver::First, take))
+            }
+        })
+    }
+
+    /// Passes the rows of [`Solution::pressure`] to `take`, in order.
+    ///
+    /// Each call of `take` gets one or more consecutive rows in one slice, and the index of the first of them. Stops at
+    /// the first error.
+    ///
+    /// # Errors
+    /// The error that `take` returns.
+    pub fn pressure_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        match (&self.pressures, self.pressure.get()) {
+            (Pressures::Grid { solution, .. }, _) => take(0, solution.pressure.values()),
+            (_, Some(pressure)) => take(0, pressure.values()),
+            (Pressures::Tiles { solution, .. }, None) => solution.pressure_rows(Receiver::First, take),
+        }
+    }
+
+    /// Passes the rows of [`Solution::pressure`] that belong to this rank to `take`.
+    ///
+    /// The rows of a rank follow each other, and the rows of the next rank follow them.
+    ///
+    /// # Errors
+    /// The error that `take` returns.
+    pub fn own_pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        match &self.pressures {
+            Pressures::Grid { .. } => self.pressure_rows(take),
+            Pressures::Tiles { solution, .. } => solution.pressure_rows(Receiver::Each, take),
+        }
+    }
+
+    /// Passes the rows of [`Solution::gap`] to `take`, as [`Solution::pressure_rows`] does.
+    ///
+    /// For the adaptive method this costs about one application of L on the whole grid.
+    ///
+    /// # Errors
+    /// The error that `take` returns.
+    pub fn gap_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        match (&self.pressures, self.gap.get()) {
+            (Pressures::Grid { solution, .. }, _) if self.how.hardness.is_infinite() => take(0, solution.gap.values()),
+            (_, Some(gap)) => take(0, gap.values()),
+            _ => self.part_rows(GapPart::Open, Receiver::First, take),
+        }
+    }
+
+    /// Passes the rows of [`Solution::plastic_gap`] to `take`, as [`Solution::gap_rows`] does.
+    ///
+    /// # Errors
+    /// The error that `take` returns.
+    pub fn plastic_gap_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        match self.plastic_gap.get() {
+            Some(gap) => take(0, gap.values()),
+            None => self.part_rows(GapPart::Plastic, Receiver::First, take),
+        }
+    }
+
+    /// Passes the rows of [`Solution::gap`] that belong to this rank to `take`.
+    ///
+    /// The order is that of [`Solution::own_pressure_rows`].
+    ///
+    /// # Errors
+    /// The error that `take` returns.
+    pub fn own_gap_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        self.part_rows(GapPart::Open, Receiver::Each, take)
+    }
+
+    /// A field on `grid` from its rows, which `rows` passes on in order.
+    fn collect(
+        &self,
+        grid: Grid,
+        rows: impl FnOnce(&mut dyn FnMut(usize, &[f64]) -> Result<(), Infallible>) -> Result<(), Infallible>,
+    ) -> Field {
+        let mut values = Vec::with_capacity(grid.len());
+        let Ok(()) = rows(&mut |_, rows| {
+            values.extend_from_slice(rows);
+            Ok(())
+        });
+        // Rows go to the first rank. Fields go to all ranks.
+        let values = self.ranks().concatenate(values);
+        Field::new(grid, values).expect("as many values as the grid has elements")
+    }
+
+    /// Passes the rows of a part of the gap to a function.
+    fn part_rows<E>(
+        &self,
+        part: GapPart,
+        receiver: Receiver,
+        take: impl FnMut(usize, &[f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        match &self.pressures {
+            Pressures::Grid { solution, .. } => part.rows((&solution.gap, &solution.pressure), self.how.hardness, take),
+            Pressures::Tiles { solution, problem } => problem.gap_rows(solution, part, Rows::on_grid(receiver), take),
+        }
+    }
+}

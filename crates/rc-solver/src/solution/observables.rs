@@ -1,0 +1,240 @@
+//! Quantities that users compute from a solution: area, pressure, gap, energy.
+
+use rc_core::{Boundary, EdgeBias};
+
+use crate::descent::info::GridSolution;
+use crate::descent::info::SolveInfo;
+use crate::parallel;
+use crate::solution::contact_area::area::ContactArea;
+use crate::solution::contact_area::plastic::PlasticContact;
+use crate::solution::contact_area::plastic::PlasticEdges;
+
+/// Observables of a solution, in units of λ and E*.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observables {
+    /// Contact area.
+    pub area: ContactArea,
+    /// Root mean square pressure of the elements, over the cell.
+    pub rms_pressure: f64,
+    /// Root mean square pressure over the cell, corrected: the best estimate.
+    ///
+    /// The correction adds the part of ⟨p²⟩ that elements at contact edges miss ([`ContactArea::missing_square`]).
+    pub rms_pressure_corrected: f64,
+    /// Estimated discretisation error of `rms_pressure_corrected`.
+    ///
+    /// `None` in full contact without a coarser level to compare with, and where contact reaches a free border. The rms
+    /// of the singular pressure there has no limit.
+    pub rms_pressure_error: Option<f64>,
+    /// Maximum pressure.
+    pub max_pressure: f64,
+    /// Mean gap, h_max - mean(h) - Δ.
+    ///
+    /// With a hardness, the overlap that plastic flow has removed is added.
+    pub mean_gap: f64,
+    /// Estimated discretisation error of `mean_gap` and of the penetration.
+    pub mean_gap_error: f64,
+    /// Elastic energy per nominal area, ½ mean(p v).
+    pub elastic_energy: f64,
+    /// The plastic part of the contact. `None` without a hardness.
+    pub plastic: Option<PlasticContact>,
+}
+
+impl Observables {
+    /// Evaluates the observables of a solution.
+    ///
+    /// It passes over the fields once, or twice with a hardness. `bias` shifts the edges of contacts. The pressure is
+    /// at most the `hardness`.
+    pub(crate) fn of(solution: &GridSolution, hardness: f64, bias: EdgeBias, boundary: Boundary) -> Self {
+        let fields = [&solution.pressure, &solution.gap];
+        let area = ContactArea::of_hard(fields, hardness, bias, boundary);
+        let plastic = hardness.is_finite().then(|| PlasticEdges::of(fields, hardness, bias, boundary));
+        let pressure = &solution.pressure;
+        Self::new(&solution.info, (area, plastic), parallel::rms(pressure), parallel::maximum(pressure.values(), 0.0))
+    }
+
+    /// Observables from the contact area and the pressures of the elements.
+    ///
+    /// The error bars include the remaining error of the iteration.
+    pub(crate) fn new(
+        info: &SolveInfo,
+        (area, plastic): (ContactArea, Option<PlasticEdges>),
+        rms_pressure: f64,
+        max_pressure: f64,
+    ) -> Self {
+        // Where the pressure leaves q = H - p to the hardness, edges of q are like other edges. p² is H² - 2 H q + q².
+        let rest = plastic.map(|edges| edges.rest);
+        let of_rest = |of_area: &dyn Fn(&ContactArea) -> f64| rest.as_ref().map_or(0.0, of_area);
+        let missing_square = area.missing_square + of_rest(&|rest| rest.missing_square);
+        let area = ContactArea { missing_square, ..area };
+        let flow = plastic.map_or(0.0, |edges| edges.contact.mean_gap);
+        let bars = plastic.map(|edges| edges.contact.with_wider_bars(area));
+        let observables = Self {
+            area: bars.map_or(area, |(area, _)| area),
+            rms_pressure,
+            rms_pressure_corrected: corrected(rms_pressure, &area),
+            rms_pressure_error: rms_pressure_error(info, (&area, rest.as_ref()), rms_pressure),
+            max_pressure,
+            mean_gap: info.mean_gap() + flow,
+            mean_gap_error: mean_gap_error(info, &area, rms_pressure)
+                .hypot(of_rest(&|rest| mean_gap_error(info, rest, rms_pressure))),
+            elastic_energy: info.elastic_energy,
+            plastic: bars.map(|(_, plastic)| plastic),
+        };
+        observables.with_energy_error(info.iteration_error)
+    }
+
+    /// Adds to the error bars the errors from the tolerance of the solve.
+    ///
+    /// `energy_error` is √(G/U), the relative error of the pressure in the energy norm. Observables have errors of its
+    /// square.
+    fn with_energy_error(self, energy_error: f64) -> Self {
+        let with = |bar: f64, value: f64| bar.hypot(energy_error.powi(2) * value);
+        Self {
+            area: self.area.with_energy_error(energy_error),
+            rms_pressure_error: self
+                .rms_pressure_error
+                .map(|bar| with(bar, PRESSURE_OF_SOLVE * self.rms_pressure_corrected)),
+            mean_gap_error: with(self.mean_gap_error, GAP_OF_SOLVE * self.mean_gap),
+            // Where the edge of the plastic part moves, the edge of the contact moves too.
+            plastic: self
+                .plastic
+                .map(|plastic| PlasticContact { error: with(plastic.error, self.area.fraction), ..plastic }),
+            ..self
+        }
+    }
+}
+
+/// The rms pressure, corrected for the error of Σ p² at edges of contacts.
+fn corrected(rms_pressure: f64, area: &ContactArea) -> f64 {
+    rms_pressure.mul_add(rms_pressure, area.missing_square).max(0.0).sqrt()
+}
+
+/// Errors of rms pressure and mean gap from the tolerance of the solve.
+///
+/// They are relative to the values, and to the square of the energy error.
+const PRESSURE_OF_SOLVE: f64 = 1.0;
+const GAP_OF_SOLVE: f64 = 0.5;
+
+/// 95 % error of the squared pressure at one independent edge. The mean over few edges scatters.
+const SQUARE_SCATTER: f64 = 0.5;
+
+/// 95 % error of [`ContactArea::missing_square`], relative to it.
+const ERROR_OF_SQUARES: f64 = 2.5;
+
+/// 95 % error of ⟨p²⟩ inside contacts that the kernel's elements cause.
+///
+/// It is relative to ⟨p²⟩, to the kernel's constant, and to the ratio of elements at edges to elements in contact.
+const SQUARE_INSIDE: f64 = 0.2;
+
+/// Error of ⟨p²⟩ from larger elements, which keep only their mean pressures.
+///
+/// With p = k √d at the distance d from an edge, an element of side s at d = 2s has the variance s k²/96. Its row along
+/// the edges is 2s wide. The elements at edges have k² times half their area.
+const SQUARE_OF_LARGER: f64 = 1.0 / 24.0;
+
+/// Ratio of the error of the rms pressure in full contact to its last change.
+///
+/// That is the change by the last halving of the elements. There are no edges, and the error is of second order, so a
+/// third is expected.
+const OF_CHANGE: f64 = 0.4;
+
+/// Estimated error of the rms pressure, see [`Observables::rms_pressure_error`].
+fn rms_pressure_error(
+    info: &SolveInfo,
+    (area, rest): (&ContactArea, Option<&ContactArea>),
+    rms_pressure: f64,
+) -> Option<f64> {
+    if area.rim.at_border > 0.0 {
+        return None;
+    }
+    let rest = rest.filter(|rest| rest.perimeter_edges > 0);
+    if area.perimeter_edges == 0 && rest.is_none() {
+        return info.coarser.map(|coarser| OF_CHANGE * (rms_pressure - coarser.rms_pressure).abs());
+    }
+    let of_rest = rest.map_or(0.0, |rest| error_of_squares(rest, rms_pressure));
+    Some(0.5 * error_of_squares(area, rms_pressure).hypot(of_rest) / rms_pressure)
+}
+
+/// Estimated error of ⟨p²⟩.
+fn error_of_squares(area: &ContactArea, rms_pressure: f64) -> f64 {
+    let (rim, squares) = (area.rim, rms_pressure * rms_pressure);
+    let scatter = SQUARE_SCATTER * rim.squares / rim.independent_edges.max(1.0).sqrt();
+    let larger = SQUARE_OF_LARGER * rim.squares * rim.larger;
+    let inside = SQUARE_INSIDE * rim.kernel * squares * per_contact_area(rim.area, area);
+    scatter.hypot(ERROR_OF_SQUARES * area.missing_square).hypot(inside).hypot(larger)
+}
+
+/// 95 % errors of the mean gap, from scatter and from the kernel.
+///
+/// The scatter is over few edges. The part from the kernel is relative to the kernel's constant. Both are multiples of
+/// ⟨p²⟩ times the side of an element over the mean pressure, times the ratio of elements at edges to elements in
+/// contact.
+const GAP_SCATTER: f64 = 0.1;
+const GAP_OF_KERNEL: f64 = 0.48;
+
+/// Ratio of the 95 % error of the mean gap to that of the area. It matters for contacts that are few and light.
+const GAP_OVER_AREA: f64 = 0.025;
+
+/// 95 % error of the mean gap from singular pressure at free borders.
+///
+/// Its unit is the ratio of `Rim::at_border` to the mean pressure. The table is in docs/measurements.md.
+const GAP_AT_BORDER: f64 = 0.7;
+
+/// Estimated error of the mean gap. It is 0 in full contact of a periodic cell and without contact.
+fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {
+    let (rim, mean_gap) = (area.rim, info.mean_gap());
+    let of_element = rim.side * rms_pressure * rms_pressure / info.mean_pressure.max(f64::MIN_POSITIVE);
+    let at_edges = of_element * per_contact_area(rim.area, area);
+    let scatter = GAP_SCATTER / rim.independent_edges.max(1.0).sqrt();
+    let of_edges = at_edges * scatter.hypot(GAP_OF_KERNEL * rim.kernel);
+    let of_border = GAP_AT_BORDER * rim.at_border / info.mean_pressure.max(f64::MIN_POSITIVE);
+    of_edges.hypot(GAP_OVER_AREA * area.relative_error() * mean_gap).hypot(of_border)
+}
+
+/// `value` relative to the contact area, and 0 without contact.
+fn per_contact_area(value: f64, area: &ContactArea) -> f64 {
+    if area.fraction > 0.0 { value / area.fraction } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::{DVec2, Field, Grid, Silent};
+
+    use crate::problem::contact_problem::ContactProblem;
+    use crate::problem::control::Control;
+    use crate::problem::method::Method;
+    use crate::solve::params::SolveParams;
+
+    /// A sphere at loose tolerances, with energy errors up to a fifth. Their bars alone hold the change to the exact
+    /// solution.
+    #[test]
+    fn the_energy_error_holds_what_a_loose_tolerance_changes() {
+        let n = 128;
+        let place = DVec2::new(0.503, 0.497);
+        let heights = Field::from_fn(Grid::square(n).expect("grid"), |at| -(at - place).length_squared());
+        let range = heights.max() - heights.min();
+        let mean_pressure = 2e-3;
+        let solve = |tolerance: f64| {
+            let params = SolveParams::to_tolerance(tolerance).by(Method::Uniform);
+            let problem = ContactProblem::new(&heights, Control::MeanPressure(mean_pressure));
+            problem.solve(&params, &Silent).expect("solvable")
+        };
+        let exact = *solve(1e-11).observables();
+        for tolerance in [1e-3, 1e-4, 1e-5] {
+            let solution = solve(tolerance);
+            let found = *solution.observables();
+            let gap = solution.info().certificate.complementarity * range;
+            let energy_error = (gap * mean_pressure / found.elastic_energy).sqrt();
+            let mut bare = found;
+            bare.area.error = 0.0;
+            (bare.rms_pressure_error, bare.mean_gap_error) = (Some(0.0), 0.0);
+            let bars = bare.with_energy_error(energy_error);
+            assert!((found.area.fraction - exact.area.fraction).abs() <= bars.area.error, "{tolerance:e}: {bars:?}");
+            let change = (found.rms_pressure_corrected - exact.rms_pressure_corrected).abs();
+            assert!(change <= bars.rms_pressure_error.expect("a bar"), "{tolerance:e}: {change:e}, {bars:?}");
+            let change = (found.mean_gap - exact.mean_gap).abs();
+            assert!(change <= bars.mean_gap_error, "{tolerance:e}: {change:e}, {bars:?}");
+            assert_eq!(found.with_energy_error(0.0), found);
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Heights of elements: at the centres of the smallest elements, and means over larger ones.
+
+use rayon::prelude::*;
+use rc_core::Boundary;
+use rc_quadtree::{CELLS, Elements, TileSet, means_of_quarter, quarters};
+
+use crate::problem::checked::HeightStatistics;
+use crate::tiles::heights::on_demand::Heights;
+use crate::tiles::mesh::Mesh;
+
+/// Depth of places without an element, in units of the height range.
+///
+/// Displacements there lack their smooth part. It differs from the smooth part at elements by at most the height range.
+/// Gaps there are therefore at least nine times the height range.
+const FAR_BELOW: f64 = 10.0;
+
+/// Height of places without an element on a patch with free borders, in λ.
+///
+/// Displacements of a patch may be any multiple of the height range, and those of such places lack their smooth part.
+const BELOW_ALL: f64 = -1e100;
+
+/// Heights of the elements that this rank has.
+///
+/// Heights of elements of `known` are taken from there. Values without an element are never in contact. Those that fill
+/// up a vector have the minimum height, and those beyond a level are far below. On a patch with free borders both are
+/// below all displacements.
+pub(crate) fn element_heights(heights: &Heights<'_>, mesh: &Mesh, known: Option<(&Mesh, &[f64])>) -> Vec<f64> {
+    let HeightStatistics { greatest, least, .. } = heights.extremes();
+    let none = match mesh.finest().boundary() {
+        Boundary::Free => BELOW_ALL,
+        Boundary::Periodic if mesh.finest().is_whole() => least,
+        Boundary::Periodic => least - FAR_BELOW * (greatest - least),
+    };
+    let over_ranks = known.filter(|(known, _)| !known.ranks().are_alone());
+    // Known heights of other ranks come first. A height is never NaN.
+    let mut result = match over_ranks {
+        Some((known, values)) => known.moved(mesh, values, f64::NAN),
+        None => vec![none; mesh.n_own()],
+    };
+    for (coarser, places, values) in mesh.own_levels() {
+        let tiles = &mesh.levels()[coarser];
+        let known = known.filter(|_| over_ranks.is_none());
+        let known = known.map(|(known, values)| (&known.levels()[coarser], &values[known.cells(coarser)]));
+        let (cells, _) = result[values].as_chunks_mut::<CELLS>();
+        cells.par_iter_mut().zip(places).with_min_len(16).for_each(|(cells, &place)| {
+            let known = known.and_then(|(tiles, values)| {
+                let tile = tiles.find(i64::from(place[0]), i64::from(place[1]))?;
+                Some(&values[tile * CELLS..][..CELLS])
+            });
+            if let Some(known) = known {
+                cells.copy_from_slice(known);
+                return;
+            }
+            if over_ranks.is_some() && !cells[0].is_nan() {
+                return;
+            }
+            heights.tile(tiles.sides(), place.map(|i| i as usize), cells);
+            if coarser > 0 {
+                to_means(heights, tiles, place, coarser, cells);
+            }
+        });
+    }
+    result
+}
+
+/// Changes heights at centres to means over the centres of the smallest elements.
+///
+/// There are n = 2^`coarser` of these per side, and the displacement of a larger element is such a mean too. Let ⟨·⟩ be
+/// the mean over n × n centres. Then `⟨h⟩ - h(0) = Δh/24 (1 - 1/n²) d²` up to fourth order. The mean over four centres
+/// therefore gives the mean over all.
+fn to_means(heights: &Heights<'_>, tiles: &TileSet, place: [u32; 2], coarser: usize, cells: &mut [f64; CELLS]) {
+    let ratio = (1.0 - 1.0 / Elements::area(coarser)) / (1.0 - 0.25);
+    for quarter in quarters(place) {
+        let mut fine = [0.0; CELLS];
+        heights.tile(tiles.sides().map(|side| 2 * side), quarter.map(|i| i as usize), &mut fine);
+        means_of_quarter(quarter, &fine, |cell, mean| cells[cell] += ratio * (mean - cells[cell]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rc_core::{DVec2, Grid, HeightField, HeightSource};
+
+    use super::*;
+
+    /// Two waves, of which the shorter has 16 of the largest elements.
+    struct TwoWaves;
+
+    impl HeightField for TwoWaves {
+        fn height(&self, DVec2 { x, y }: DVec2) -> f64 {
+            let wave = |t: f64| (std::f64::consts::TAU * t).cos();
+            wave(3.0 * x + y + 0.1) + wave(2.0 * x - 3.0 * y + 0.4)
+        }
+
+        fn band_limit(&self) -> Option<usize> {
+            Some(4)
+        }
+    }
+
+    #[test]
+    fn a_larger_element_is_as_high_as_the_smallest_in_it_on_average() {
+        let finest = Grid::square(256).expect("a grid");
+        let heights =
+            Heights::new(HeightSource::Surface { surface: &TwoWaves, grid: finest }, [64, 64]).expect("heights");
+        let sampled = TwoWaves.sample(finest);
+        let tiles = [(32, [16, 16]), (16, [4, 4]), (8, [0, 0])];
+        let elements =
+            Elements::new(tiles.map(|(per_side, place)| TileSet::new([8 * per_side; 2], vec![place])).to_vec());
+        let values = element_heights(&heights, &Mesh::from(elements.clone()), None);
+        for (coarser, (_, [column, row])) in tiles.into_iter().enumerate() {
+            let (n, start) = (1 << coarser, elements.cells(coarser).start);
+            for cell in 0..CELLS {
+                let (x, y) = (n * (8 * column as usize + cell % 8), n * (8 * row as usize + cell / 8));
+                let sum: f64 = (0..n * n).map(|i| sampled.at(x + i % n, y + i / n)).sum();
+                let error = values[start + cell] - sum / (n * n) as f64;
+                // The error is of fourth order: (2π/16)⁴ / 1920 of a wave, and the interpolation.
+                assert!(error.abs() < 3e-5, "{n} x {n} elements, cell {cell}: off by {error:e}");
+            }
+        }
+    }
+}

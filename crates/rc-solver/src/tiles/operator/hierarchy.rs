@@ -1,0 +1,200 @@
+//! The tiles of all levels between the base grid and the finest elements.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use rc_quadtree::{BLOCK_TILES, Elements, TILE, TileSet};
+
+use crate::tiles::base::Base;
+use crate::tiles::ladder;
+use crate::tiles::ladder::sides_of;
+use crate::tiles::mesh::Mesh;
+use crate::tiles::operator::base_part::BasePart;
+use crate::tiles::operator::coarse::Leaves;
+use crate::tiles::part::{Part, append_around};
+
+/// The tiles of all levels, coarsest first.
+///
+/// The first level is the whole base grid. The last has the finest elements.
+pub(crate) struct Hierarchy {
+    base: Base,
+    reach: Reach,
+    mesh: Mesh,
+    /// The elements, on levels that have the operator's period.
+    elements: Elements,
+    /// The blocks of a vector: their coarseness and their tiles.
+    ///
+    /// The coarseness is relative to the finest level.
+    pub(crate) blocks: Vec<(usize, Range<usize>)>,
+    /// The parts with the densities of each level, including those of coarser elements.
+    ///
+    /// On the finest level they are its elements.
+    pub(crate) levels: Vec<Part>,
+    /// The part of the base grid that this rank computes. `None` without other ranks.
+    pub(crate) base_part: Option<BasePart>,
+    /// The elements that are 2, 4, … times as large as the finest.
+    pub(crate) leaves: Vec<Leaves>,
+}
+
+/// Number of cells of a level that values reach.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Reach {
+    /// Reach of filters, between levels and within one.
+    pub(crate) filter: usize,
+    /// Reach of stencils.
+    pub(crate) stencil: usize,
+}
+
+impl Hierarchy {
+    /// The levels over `elements` down to the base grid.
+    ///
+    /// Each has the tiles that filters need. The sides of the base grid must be multiples of 8. The coarsest elements
+    /// must be finer than the base grid's. Elements whose sizes differ by more than a factor of 2 must be farther apart
+    /// than stencils of the level between them reach.
+    pub(crate) fn new(base: impl Into<Base>, mesh: impl Into<Mesh>, reach: Reach) -> Self {
+        let (base, mesh) = (base.into(), mesh.into());
+        let elements = in_period(base, mesh.elements());
+        let mut levels = vec![elements.finest().clone()];
+        let [nx, ny] = mesh.elements().finest().sides();
+        let finest = base.grid().with_elements(nx, ny).expect("a level of a checked grid");
+        for level in (1..ladder::n_levels(base.grid(), finest)).rev() {
+            let sides = base.period_of(sides_of(ladder::doubled(base.grid(), level)));
+            let parents = mesh.on_coarser(&levels[levels.len() - 1], sides, reach.filter);
+            levels.push(match elements.levels().get(levels.len()) {
+                Some(leaves) => parents.with(&leaves.around(reach.filter)),
+                None => parents,
+            });
+        }
+        levels.push(TileSet::full(base.period()));
+        levels.reverse();
+        debug_assert!(elements.levels().len() < levels.len(), "no elements are on the base grid");
+        let pairs = elements.levels().windows(2);
+        let leaves = pairs.map(|pair| Leaves::new(pair[1].clone(), &pair[0], reach.stencil)).collect();
+        let (levels, base_part) = dealt(levels, &mesh, reach);
+        Self { base, reach, blocks: blocks(&mesh, &levels), mesh, elements, levels, base_part, leaves }
+    }
+
+    /// The elements, on levels that have the operator's period.
+    pub(crate) fn elements(&self) -> &Elements {
+        &self.elements
+    }
+
+    /// The elements, and those of them that this rank has.
+    pub(crate) fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Number of values that operators keep for elements.
+    ///
+    /// Values of other ranks that this rank reads are included.
+    pub(crate) fn n_values(&self) -> usize {
+        if self.mesh.ranks().are_alone() { self.elements().len() } else { self.finest().n_cells() }
+    }
+
+    /// The range of the own values among these.
+    pub(crate) fn own_values(&self) -> Range<usize> {
+        if self.mesh.ranks().are_alone() { 0..self.elements().len() } else { self.finest().own_cells() }
+    }
+
+    /// The tiles of the finest level.
+    pub(crate) fn finest(&self) -> &Part {
+        &self.levels[self.n_levels()]
+    }
+
+    /// The range of the values of the finest level among those of elements.
+    pub(crate) fn finest_values(&self) -> Range<usize> {
+        0..self.finest().n_cells()
+    }
+
+    /// The base grid.
+    pub(crate) fn base(&self) -> Base {
+        self.base
+    }
+
+    /// The hierarchy for the preconditioner, which halves every level.
+    ///
+    /// The finest level may have fewer than twice the elements of the level below it. A strip without elements, along
+    /// the seam, then takes the place of the missing ones.
+    pub(crate) fn halved(self: &Arc<Self>) -> Arc<Self> {
+        let (sides, finest) = (sides_of(ladder::doubled(self.base.grid(), self.n_levels())), self.mesh.finest());
+        if finest.sides() == sides {
+            return Arc::clone(self);
+        }
+        let tiles = finest.of_same_cell(sides, finest.places().to_vec());
+        Arc::new(Self::new(self.base, Elements::uniform(tiles), self.reach))
+    }
+
+    /// Number of levels above the base grid.
+    pub(crate) fn n_levels(&self) -> usize {
+        self.levels.len() - 1
+    }
+
+    /// The elements of a level: their range in a vector, and their tiles.
+    pub(crate) fn elements_of(&self, level: usize) -> Option<(Range<usize>, &TileSet)> {
+        let coarser = self.n_levels() - level;
+        if coarser == 0 && !self.mesh.ranks().are_alone() {
+            return Some((self.finest_values(), self.finest().tiles()));
+        }
+        self.elements().levels().get(coarser).map(|tiles| (self.elements().cells(coarser), tiles))
+    }
+}
+
+/// The elements, on levels that have the operator's period.
+///
+/// Tiles keep their order, so values keep their places.
+fn in_period(base: Base, elements: &Elements) -> Elements {
+    if !base.is_free() {
+        return elements.clone();
+    }
+    let level = |tiles: &TileSet| TileSet::new(base.period_of(tiles.sides()), tiles.places().to_vec());
+    Elements::new(elements.levels().iter().map(level).collect())
+}
+
+/// The parts of this rank in all levels, coarsest first, and in the base grid.
+fn dealt(levels: Vec<TileSet>, mesh: &Mesh, reach: Reach) -> (Vec<Part>, Option<BasePart>) {
+    let ranks = mesh.ranks();
+    if ranks.are_alone() {
+        return (levels.into_iter().map(Part::whole).collect(), None);
+    }
+    // Tiles around one tile on its level or a coarser one, and around the four tiles under one.
+    let near = reach.filter.max(reach.stencil).div_ceil(TILE);
+    let under = (2 * reach.filter).div_ceil(TILE);
+    // The tiles of the base grid that have a density.
+    let active = mesh.on_coarser(&levels[1], levels[0].sides(), under * TILE / 2);
+    let mut deals = vec![mesh.deal()];
+    for finer in (1..levels.len()).rev() {
+        let coarser = if finer == 1 { &active } else { &levels[finer - 1] };
+        deals.push(deals[deals.len() - 1].of_coarser(&levels[finer], coarser));
+    }
+    deals.reverse();
+    let own = |level: usize| {
+        let tiles = if level == 0 { &active } else { &levels[level] };
+        &tiles.places()[deals[level].range(ranks.rank())]
+    };
+    let mut parts = vec![Part::whole(levels[0].clone())];
+    for level in 1..levels.len() {
+        let (extent, mut read) = (levels[level].extent(), Vec::new());
+        for &place in own(level) {
+            append_around(&mut read, (place, place), near, extent);
+        }
+        for &place in if level + 1 < levels.len() { own(level + 1) } else { &[] } {
+            let over = place.map(|i| i / 2);
+            append_around(&mut read, (over, over), near, extent);
+        }
+        for &place in own(level - 1) {
+            append_around(&mut read, (place.map(|i| 2 * i), place.map(|i| 2 * i + 1)), under, extent);
+        }
+        parts.push(Part::new(ranks, &levels[level], &deals[level], read));
+    }
+    let own = deals[0].range(ranks.rank());
+    (parts, Some(BasePart::new(ranks, active, own)))
+}
+
+/// The blocks of this rank's vectors.
+fn blocks(mesh: &Mesh, levels: &[Part]) -> Vec<(usize, Range<usize>)> {
+    if mesh.ranks().are_alone() {
+        return mesh.blocks();
+    }
+    let own = levels[levels.len() - 1].own();
+    own.clone().step_by(BLOCK_TILES).map(|first| (0, first..(first + BLOCK_TILES).min(own.end))).collect()
+}

@@ -1,0 +1,241 @@
+//! Tables of an operator for each level of a hierarchy: L, or its approximate inverse.
+
+use std::f64::consts::PI;
+
+use rc_core::Grid;
+use rc_fft::SymbolTable;
+use rc_kernel::{CoarseElement, Filter, ScaleSplit, Stencil};
+
+use crate::grid::response::table_of_response;
+use crate::tiles::base::Base;
+use crate::tiles::ladder;
+use crate::tiles::ladder::{has_squares, sides_of};
+use crate::tiles::operator::coarse::CoarseTable;
+use crate::tiles::operator::hierarchy::Reach;
+use crate::tiles::operator::sizes::{Real, Sizes};
+use crate::tiles::operator::stencil::Taps;
+use crate::tiles::operator::transfer::Transfer;
+use crate::tiles::operator::uneven::Uneven;
+
+/// Tables of one operator on levels 0 to K.
+///
+/// Level 0 is the base grid, with its Fourier transform.
+#[derive(Clone)]
+pub(crate) struct Tables<T> {
+    pub(crate) sizes: Sizes<T>,
+    pub(crate) base: SymbolTable<T>,
+    /// Stencils of levels 1 to K, and transfers to the next coarser level.
+    pub(crate) levels: Vec<(Taps<T>, Transfer<T>)>,
+    /// The transfer between the finest level and the next coarser one, if they are uneven.
+    ///
+    /// The coarser level does not have half as many elements along a side then.
+    pub(crate) uneven: Option<Uneven<T>>,
+    /// Tables of elements 2, 4, … times as large as the finest.
+    ///
+    /// Empty when these elements are like any value of their level.
+    coarse: Vec<CoarseTable<T>>,
+}
+
+impl<T: Real> Tables<T> {
+    /// Changes the eigenvalue for constant vectors.
+    pub(crate) fn set_mean(&mut self, eigenvalue: f64, base: Base) {
+        let ([nx, ny], n) = (base.period(), base.grid().len() as f64);
+        let n_period = nx as f64 * ny as f64;
+        // The load on the period is what the heights get.
+        self.base.set_mean(T::rounded(n / n_period * eigenvalue / n_period));
+    }
+
+    /// The table of elements 2^`coarser` times as large as the finest.
+    pub(crate) fn coarse_table(&self, coarser: usize) -> Option<&CoarseTable<T>> {
+        self.coarse.get(coarser - 1)
+    }
+}
+
+/// The split kernel of one base grid. Tables of any number of levels follow from it.
+pub(crate) struct Prepared<T> {
+    sizes: Sizes<T>,
+    base: Base,
+    symbol: SymbolTable<T>,
+    /// Stencil and transfer of the finest level. Those below are of levels between it and the base grid.
+    finest: (Stencil, Transfer<T>),
+    between: (Stencil, Transfer<T>),
+    coarse: Vec<CoarseElement>,
+    scale: Scale,
+    remainder_curvature: f64,
+    split: ScaleSplit,
+}
+
+/// The dependence of weights on the side h of an element.
+#[derive(Clone, Copy)]
+enum Scale {
+    /// Weights are proportional to h: displacements.
+    Side,
+    /// Weights are proportional to 1/h: pressures.
+    Inverse,
+}
+
+/// Reach of the preconditioner's stencils.
+const INVERSE_RADIUS: usize = 2;
+
+impl<T: Real> Prepared<T> {
+    /// Prepares `v = L p` for Love's squares, and elements up to 2^`n_coarse` times as large.
+    pub(crate) fn displacement(split: &ScaleSplit, base: impl Into<Base>, n_coarse: usize) -> Self {
+        let base = base.into();
+        let cutoff = 0.5 * split.params().cutoff as f64 * base.grid().spacing().min_element();
+        let sizes = T::sizes(split.params());
+        let transfer = |filter: &Filter| Transfer::new(filter, sizes.taps);
+        Self {
+            sizes,
+            base,
+            symbol: remainder_symbol(split, base, cutoff),
+            finest: (split.love_stencil(), transfer(&split.love_filter())),
+            between: (level_stencil(split, base.grid()), transfer(&split.level_filter())),
+            coarse: split.coarse_elements(n_coarse),
+            scale: Scale::Side,
+            remainder_curvature: split.remainder_curvature(cutoff),
+            split: split.clone(),
+        }
+    }
+
+    /// Prepares about |q|/2 as a preconditioner: the inverse of L except for the mean.
+    pub(crate) fn inverse(split: &ScaleSplit, base: impl Into<Base>) -> Self {
+        let base = base.into();
+        let sizes = T::sizes(split.params());
+        let part = (split.inverse_stencil(INVERSE_RADIUS), Transfer::new(&split.level_filter(), sizes.taps));
+        let (periodic, [along_x, _]) = (base.periodic_grid(), base.periods_per_side());
+        let symbol = SymbolTable::new(periodic, |kx: usize, ky: usize| {
+            PI * (kx as f64).hypot(ky as f64 / periodic.cell_ratio()) / along_x
+        });
+        Self {
+            sizes,
+            base,
+            symbol,
+            finest: part.clone(),
+            between: part,
+            coarse: Vec::new(),
+            scale: Scale::Inverse,
+            // There is no bound. Values on the base grid are not a smooth part of anything.
+            remainder_curvature: f64::INFINITY,
+            split: split.clone(),
+        }
+    }
+
+    /// The number of cells that values reach on a level.
+    pub(crate) fn reach(&self) -> Reach {
+        Reach { filter: self.finest.1.reach(), stencil: self.finest.0.radius() }
+    }
+
+    /// Bound of the second derivatives, along the axes, of values on the base grid.
+    ///
+    /// Pressures are between 0 and 1.
+    pub(crate) fn remainder_curvature(&self) -> f64 {
+        self.remainder_curvature
+    }
+
+    /// Tables for a finest level of this whole grid.
+    pub(crate) fn tables(&self, finest: Grid) -> Tables<T> {
+        let n_levels = ladder::n_levels(self.base.grid(), finest);
+        // A preconditioner halves every level.
+        let is_uneven = matches!(self.scale, Scale::Side) && !ladder::is_even(self.base.grid(), finest);
+        let below = is_uneven.then(|| self.below_uneven(finest, n_levels));
+        let (mut levels, mut sum) = (Vec::with_capacity(n_levels), 0.0);
+        for level in 1..=n_levels {
+            let (stencil, transfer) = if level == n_levels { &self.finest } else { &self.between };
+            let stencil = below.as_ref().filter(|_| level + 1 == n_levels).unwrap_or(stencil);
+            let factor = self.factor(level, (level == n_levels && is_uneven).then_some(finest));
+            sum += factor * stencil.sum();
+            levels.push((Taps::new(stencil, factor, self.sizes.around), transfer.clone()));
+        }
+        let mut base = if is_uneven && n_levels == 1 {
+            remainder_symbol(&self.split, self.base, self.cutoff() * finest.spacing().min_element())
+        } else {
+            self.symbol.clone()
+        };
+        match self.scale {
+            // With free borders a uniform pressure displaces.
+            Scale::Side if self.base.is_free() => {}
+            // A constant gives zero (Eq. 3). The base grid subtracts what the stencils add to it.
+            Scale::Side => base.set_mean(T::rounded(-sum / self.base.grid().len() as f64)),
+            // Its stencils act on differences between levels, which are zero for a constant.
+            Scale::Inverse => base.set_mean(T::rounded(0.0)),
+        }
+        let uneven = is_uneven.then(|| self.uneven(finest, n_levels));
+        Tables { sizes: self.sizes, base, levels, uneven, coarse: self.coarse_tables(n_levels) }
+    }
+
+    /// The cutoff, in elements of a level.
+    fn cutoff(&self) -> f64 {
+        self.split.params().cutoff as f64
+    }
+
+    /// The stencil of the level below an uneven finest level.
+    ///
+    /// The finest level does not have twice as many elements. The two cutoffs differ by less than a factor of two.
+    fn below_uneven(&self, finest: Grid, n_levels: usize) -> Stencil {
+        let spacing = ladder::doubled(self.base.grid(), n_levels - 1).spacing();
+        let inner = self.cutoff() * finest.spacing().min_element() / spacing.min_element();
+        self.split.uneven_level_stencil(inner, (spacing / spacing.min_element()).into())
+    }
+
+    /// The transfer to an uneven finest level.
+    fn uneven(&self, finest: Grid, n_levels: usize) -> Uneven<T> {
+        let levels = [sides_of(finest), sides_of(ladder::doubled(self.base.grid(), n_levels - 1))];
+        let [fine, coarse] = levels.map(|sides| self.base.period_of(sides));
+        let filters = [0, 1].map(|axis| self.split.uneven_filter(coarse[axis] as f64 / fine[axis] as f64));
+        Uneven::new(&filters, fine, coarse)
+    }
+
+    /// Factor on a stencil in units of the elements of a level.
+    ///
+    /// The level's grid is the doubled base grid, unless another `grid` is given.
+    fn factor(&self, level: usize, grid: Option<Grid>) -> f64 {
+        let grid = grid.unwrap_or_else(|| ladder::doubled(self.base.grid(), level));
+        match self.scale {
+            Scale::Side => grid.spacing().min_element(),
+            Scale::Inverse => grid.nx() as f64,
+        }
+    }
+
+    fn coarse_tables(&self, n_levels: usize) -> Vec<CoarseTable<T>> {
+        let side = self.sizes.around;
+        // Elements of one size act on each other across a border with larger elements as they do anywhere.
+        let whole = [&self.finest.0].into_iter().chain(self.coarse.iter().map(|element| &element.whole));
+        let levels = (1..n_levels).rev();
+        levels
+            .zip(self.coarse.iter().zip(whole))
+            .map(|(level, (element, finer))| {
+                let across = Taps::new(finer, self.factor(level + 1, None), side);
+                CoarseTable::new(element, self.factor(level, None), across, side)
+            })
+            .collect()
+    }
+}
+
+/// The remainder of the split at `cutoff`, in λ, on the base grid.
+///
+/// It is that without images where borders are free.
+fn remainder_symbol<T: Real>(split: &ScaleSplit, base: Base, cutoff: f64) -> SymbolTable<T> {
+    if base.is_free() {
+        let (spacing, reach) = (base.grid().spacing(), base.period().map(|n| n / 2 + 1));
+        return table_of_response(base.periodic_grid(), reach, &|ix, iy| {
+            let r = (spacing.x * ix as f64).hypot(spacing.y * iy as f64);
+            spacing.x * spacing.y * split.remainder(r, cutoff)
+        });
+    }
+    let base = base.grid();
+    SymbolTable::new(base, |kx: usize, ky: usize| {
+        let q = 2.0 * PI * (kx as f64).hypot(ky as f64 / base.cell_ratio());
+        if q == 0.0 { 0.0 } else { split.remainder_symbol(q, cutoff) }
+    })
+}
+
+/// The stencil of levels between the base grid and the finest.
+///
+/// Their elements are squares or nearly squares, like those of the base grid.
+fn level_stencil(split: &ScaleSplit, base: Grid) -> Stencil {
+    if has_squares(base) {
+        return split.level_stencil();
+    }
+    let sides = base.spacing() / base.spacing().min_element();
+    split.uneven_level_stencil(0.5 * split.params().cutoff as f64, sides.into())
+}

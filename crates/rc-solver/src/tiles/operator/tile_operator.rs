@@ -1,0 +1,311 @@
+//! One application of the multilevel operator.
+//!
+//! It goes up to the base grid, applies its convolution, and goes down again.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use pulp::Arch;
+use rc_fft::{BLOCK_ROWS, Convolution, Instructions};
+use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE};
+
+use crate::descent::layout::BlockLayout;
+use crate::grid::passes::{read_rows, write_rows};
+use crate::parallel;
+use crate::parallel::Tasks;
+use crate::tiles::base::Base;
+use crate::tiles::operator::coarse::Leaves;
+use crate::tiles::operator::hierarchy::Hierarchy;
+use crate::tiles::operator::passes::{
+    CoarseDensity, CoarseDisplacement, Displacement, GhostDisplacement, Restriction, Targets, UnevenDisplacement,
+    UnevenRestriction,
+};
+use crate::tiles::operator::sizes::Real;
+use crate::tiles::operator::tables::Tables;
+use crate::tiles::operator::tile_values::TileValues;
+use crate::tiles::part::Part;
+
+/// Buffers for operators on one hierarchy.
+///
+/// Blocks of vectors have [`BLOCK_CELLS`] cells. Memory for vectors is taken when pressures are written.
+pub(crate) struct TileOperator<T> {
+    hierarchy: Arc<Hierarchy>,
+    arch: Arch,
+    convolution: Convolution<T>,
+    source: Vec<T>,
+    /// Densities and displacements of each level below the finest.
+    densities: Vec<Vec<T>>,
+    displacements: Vec<Vec<T>>,
+    /// Values of the ghosts of each level of coarse elements.
+    ghosts: Vec<Vec<T>>,
+}
+
+impl<T: Real> TileOperator<T> {
+    pub(crate) fn new(hierarchy: Arc<Hierarchy>) -> Self {
+        Self {
+            arch: match Instructions::of_process() {
+                Instructions::Best => Arch::new(),
+                Instructions::Scalar | Instructions::Sse => Arch::Scalar,
+            },
+            convolution: Convolution::new(hierarchy.base().periodic_grid()),
+            source: Vec::new(),
+            densities: Vec::new(),
+            displacements: Vec::new(),
+            ghosts: Vec::new(),
+            hierarchy,
+        }
+    }
+
+    /// Takes memory for vectors, if they have none.
+    fn reserve(&mut self) {
+        let hierarchy = &self.hierarchy;
+        if self.source.is_empty() {
+            let zeros = |part: &Part| vec![T::default(); part.n_cells()];
+            let below_finest = &hierarchy.levels[..hierarchy.n_levels()];
+            self.densities = below_finest.iter().map(zeros).collect();
+            self.displacements = below_finest.iter().map(zeros).collect();
+            self.ghosts = hierarchy.leaves.iter().map(|leaves| vec![T::default(); leaves.ghosts.n_cells()]).collect();
+            self.source = vec![T::default(); hierarchy.n_values()];
+        }
+    }
+
+    /// Frees the memory of vectors until pressures are written again.
+    pub(crate) fn release(&mut self) {
+        (self.source, self.densities, self.displacements, self.ghosts) = Default::default();
+    }
+
+    /// Buffers that another operator on the base grid and the elements may use and change.
+    ///
+    /// They are the vector instructions, the convolution, and room for a vector.
+    pub(crate) fn buffers(&mut self) -> (Arch, &mut Convolution<T>, &mut [T]) {
+        self.reserve();
+        (self.arch, &mut self.convolution, &mut self.source)
+    }
+
+    /// The division of vectors into blocks.
+    pub(crate) fn layout(&self) -> BlockLayout {
+        self.hierarchy.mesh().layout()
+    }
+
+    /// The base grid.
+    pub(crate) fn base(&self) -> Base {
+        self.hierarchy.base()
+    }
+
+    /// The smooth remainder: the displacement of the cells of the base grid's period.
+    ///
+    /// It is that of the last [`TileOperator::apply`], tile by tile, row-major.
+    pub(crate) fn base_displacement(&self) -> &[T] {
+        &self.displacements[0]
+    }
+
+    /// Calls `write` once for each block, with its index and the values to fill in.
+    pub(crate) fn write(&mut self, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
+        self.reserve();
+        let own = &mut self.source[self.hierarchy.own_values()];
+        parallel::for_each(own.chunks_mut(BLOCK_CELLS).enumerate(), |(i, cells)| write(i, cells));
+    }
+
+    /// Applies a table, except for the part of the elements' own level.
+    ///
+    /// [`TileOperator::read`] adds that part.
+    pub(crate) fn apply(&mut self, tables: &Tables<T>) {
+        self.hierarchy.finest().exchange(&mut self.source);
+        self.set_ghosts();
+        self.restrict(tables);
+        self.convolve_base(tables);
+        self.prolong(tables);
+    }
+
+    /// Calls `read` once for each block, with its index and the result.
+    ///
+    /// The result is that of the last [`TileOperator::apply`], which must have had the same tables.
+    pub(crate) fn read(&self, tables: &Tables<T>, read: &(dyn Fn(usize, &[T]) + Sync)) {
+        let (blocks, n_own) = (&self.hierarchy.blocks, self.hierarchy.own_values().len());
+        parallel::for_each_index(blocks.len(), &|i| {
+            let mut block = [T::default(); BLOCK_CELLS];
+            let (coarser, tiles) = &blocks[i];
+            let cells = &mut block[..tiles.len() * CELLS];
+            if *coarser == 0 {
+                self.displace_finest(tables, tiles.clone(), cells);
+            } else {
+                self.displace_coarse(tables, *coarser, tiles.clone(), cells);
+            }
+            self.add_ghosts(tables, *coarser, tiles.clone(), cells);
+            // Values that fill up the last block of a level have no displacement.
+            read(i, &block[..(n_own - i * BLOCK_CELLS).min(BLOCK_CELLS)]);
+        });
+    }
+
+    fn set_ghosts(&mut self) {
+        let elements = self.hierarchy.elements();
+        for (i, (leaves, ghosts)) in self.hierarchy.leaves.iter().zip(&mut self.ghosts).enumerate() {
+            let values = &self.source[elements.cells(i + 1)];
+            parallel::for_each(blocks(leaves.ghosts.places(), ghosts), |Targets { places, cells }| {
+                leaves.set_ghosts(values, places, cells);
+            });
+        }
+    }
+
+    /// Computes the densities of the levels between the finest and the base grid.
+    fn restrict(&mut self, tables: &Tables<T>) {
+        let (n_levels, arch) = (self.hierarchy.n_levels(), self.arch);
+        let levels = &self.hierarchy.levels;
+        for level in (1..n_levels).rev() {
+            let (coarser, finer) = self.densities.split_at_mut(level + 1);
+            let finer = TileValues::new(finer.first().unwrap_or(&self.source), levels[level + 1].tiles());
+            let density = &mut coarser[level];
+            parallel::for_each(own_blocks(&levels[level], density), |targets| {
+                restrict(tables, (level, n_levels), finer, (arch, targets));
+            });
+            if let Some((cells, tiles)) = self.hierarchy.elements_of(level) {
+                let elements = TileValues::new(&self.source[cells], tiles);
+                let pass = CoarseDensity { table: tables.coarse_table(n_levels - level), elements };
+                parallel::for_each(own_blocks(&levels[level], density), |targets| {
+                    (tables.sizes.passes.add_coarse)(arch, &pass, targets);
+                });
+            }
+            levels[level].exchange(density);
+        }
+    }
+
+    /// Computes the base grid: its density from level 1, its convolution, its displacement as tiles.
+    fn convolve_base(&mut self, tables: &Tables<T>) {
+        let (side, arch, levels) = (self.hierarchy.base().period()[0], self.arch, &self.hierarchy.levels);
+        let finer = TileValues::new(self.densities.get(1).unwrap_or(&self.source), levels[1].tiles());
+        let n_levels = self.hierarchy.n_levels();
+        let tiles_per_block = BLOCK_ROWS / TILE * (side / TILE);
+        let over_ranks = self.hierarchy.base_part.as_ref().map(|part| {
+            let places = part.own_places();
+            let mut own = vec![T::default(); places.len() * CELLS];
+            parallel::for_each(blocks(places, &mut own), |targets| {
+                restrict(tables, (0, n_levels), finer, (arch, targets));
+            });
+            (part, part.gathered(own))
+        });
+        write_rows(&mut self.convolution, &|i, rows| {
+            let mut cells = vec![T::default(); rows.len()];
+            let places = &levels[0].tiles().places()[i * tiles_per_block..][..rows.len() / CELLS];
+            match &over_ranks {
+                None => restrict(tables, (0, n_levels), finer, (arch, Targets { places, cells: &mut cells })),
+                Some((part, gathered)) => part.copy(gathered, places, &mut cells),
+            }
+            tiles_to_rows(&cells, rows, side);
+        });
+        self.convolution.apply_symbol(&tables.base);
+        let blocks = Tasks::new(self.displacements[0].chunks_mut(BLOCK_ROWS * side));
+        read_rows(&self.convolution, &|i, rows| blocks.run(i, |cells| rows_to_tiles(rows, cells, side)));
+    }
+
+    /// Computes the displacements of the levels between the base grid and the finest.
+    fn prolong(&mut self, tables: &Tables<T>) {
+        let (arch, levels) = (self.arch, &self.hierarchy.levels);
+        for level in 1..self.hierarchy.n_levels() {
+            let (coarser, finer) = self.displacements.split_at_mut(level);
+            let pass = Displacement {
+                table: &tables.levels[level - 1],
+                density: TileValues::new(&self.densities[level], levels[level].tiles()),
+                coarser: TileValues::new(&coarser[level - 1], levels[level - 1].tiles()),
+            };
+            parallel::for_each(own_blocks(&levels[level], &mut finer[0]), |targets| {
+                (tables.sizes.passes.displace)(arch, &pass, targets);
+            });
+            levels[level].exchange(&mut finer[0]);
+        }
+    }
+
+    /// Writes the displacement of some tiles of the finest elements.
+    fn displace_finest(&self, tables: &Tables<T>, tiles: Range<usize>, cells: &mut [T]) {
+        let (levels, level) = (&self.hierarchy.levels, self.hierarchy.n_levels());
+        let finest = self.hierarchy.finest_values();
+        let table = &tables.levels[level - 1];
+        let density = TileValues::new(&self.source[finest], levels[level].tiles());
+        let coarser = TileValues::new(&self.displacements[level - 1], levels[level - 1].tiles());
+        let targets = Targets { places: &levels[level].tiles().places()[tiles], cells };
+        if let Some(uneven) = &tables.uneven {
+            let pass = UnevenDisplacement { taps: &table.0, uneven, density, coarser };
+            (tables.sizes.passes.displace_uneven)(self.arch, &pass, targets);
+        } else {
+            let pass = Displacement { table, density, coarser };
+            (tables.sizes.passes.displace)(self.arch, &pass, targets);
+        }
+    }
+
+    /// Writes the displacement of some tiles of elements 2^`coarser` times as large as the finest.
+    fn displace_coarse(&self, tables: &Tables<T>, coarser: usize, tiles: Range<usize>, cells: &mut [T]) {
+        let Hierarchy { levels, leaves, .. } = self.hierarchy.as_ref();
+        let (elements, level) = (self.hierarchy.elements(), self.hierarchy.n_levels() - coarser);
+        let Leaves { tiles: here, ghosts } = &leaves[coarser - 1];
+        let finer = &self.source[elements.cells(coarser - 1)];
+        let pass = CoarseDisplacement {
+            table: tables.coarse_table(coarser),
+            elements: TileValues::new(&self.source[elements.cells(coarser)], here),
+            finer: TileValues::new(finer, &elements.levels()[coarser - 1]),
+            ghosts,
+            level: TileValues::new(&self.displacements[level], levels[level].tiles()),
+        };
+        (tables.sizes.passes.displace_coarse)(self.arch, &pass, Targets { places: &here.places()[tiles], cells });
+    }
+
+    /// Adds the displacement that larger elements nearby cause in some tiles.
+    ///
+    /// The tiles have elements 2^`coarser` times as large as the finest.
+    fn add_ghosts(&self, tables: &Tables<T>, coarser: usize, tiles: Range<usize>, cells: &mut [T]) {
+        let Some(larger) = self.hierarchy.leaves.get(coarser) else { return };
+        let Some(table) = tables.coarse_table(coarser + 1) else { return };
+        let ghosts = TileValues::new(&self.ghosts[coarser], &larger.ghosts);
+        let places = &self.hierarchy.elements().levels()[coarser].places()[tiles];
+        let pass = GhostDisplacement { taps: &table.across, ghosts };
+        (tables.sizes.passes.add_ghosts)(self.arch, &pass, Targets { places, cells });
+    }
+}
+
+/// Computes the densities of tiles of a level from those of the next finer one.
+///
+/// The last level is the finest.
+fn restrict<T: Real>(
+    tables: &Tables<T>,
+    (level, n_levels): (usize, usize),
+    finer: TileValues<'_, T>,
+    (arch, targets): (Arch, Targets<'_, T>),
+) {
+    match &tables.uneven {
+        Some(uneven) if level + 1 == n_levels => {
+            (tables.sizes.passes.restrict_uneven)(arch, &UnevenRestriction { uneven, finer }, targets);
+        }
+        _ => (tables.sizes.passes.restrict)(arch, &Restriction { transfer: &tables.levels[level].1, finer }, targets),
+    }
+}
+
+/// The tiles of a level, block by block.
+fn blocks<'a, T>(places: &'a [[u32; 2]], cells: &'a mut [T]) -> impl Iterator<Item = Targets<'a, T>> {
+    let blocks = cells.chunks_mut(BLOCK_CELLS).zip(places.chunks(BLOCK_TILES));
+    blocks.map(|(cells, places)| Targets { places, cells })
+}
+
+/// The own tiles of a level, block by block, from the values of all tiles.
+fn own_blocks<'a, T>(part: &'a Part, cells: &'a mut [T]) -> impl Iterator<Item = Targets<'a, T>> {
+    blocks(part.own_places(), &mut cells[part.own_cells()])
+}
+
+/// Copies whole rows of tiles to rows of `side` cells.
+pub(crate) fn tiles_to_rows<T: Copy>(cells: &[T], rows: &mut [T], side: usize) {
+    for (lines, tiles) in rows.chunks_exact_mut(TILE * side).zip(cells.chunks_exact(TILE * side)) {
+        for (row, line) in lines.chunks_exact_mut(side).enumerate() {
+            for (values, tile) in line.as_chunks_mut::<TILE>().0.iter_mut().zip(tiles.as_chunks::<CELLS>().0) {
+                values.copy_from_slice(&tile[row * TILE..][..TILE]);
+            }
+        }
+    }
+}
+
+/// Copies rows of cells to tiles: the reverse of [`tiles_to_rows`].
+pub(crate) fn rows_to_tiles<T: Copy>(rows: &[T], cells: &mut [T], side: usize) {
+    for (tiles, lines) in cells.chunks_exact_mut(TILE * side).zip(rows.chunks_exact(TILE * side)) {
+        for (row, line) in lines.chunks_exact(side).enumerate() {
+            for (tile, values) in tiles.as_chunks_mut::<CELLS>().0.iter_mut().zip(line.as_chunks::<TILE>().0) {
+                tile[row * TILE..][..TILE].copy_from_slice(values);
+            }
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Operators of a kernel against each other.
+
+use rc_core::testing::{check_operator, quasi_random};
+use rc_core::{Grid, Kernel, Operator};
+use rc_kernel::{Love, Spectral};
+
+use rc_solver::{DirectSum, UniformOperator};
+
+#[test]
+fn operators_meet_the_contract() {
+    for kernel in [&Love as &dyn Kernel, &Spectral] {
+        for (nx, ny) in [(12, 10), (9, 15), (1, 8), (40, 33)] {
+            let grid = Grid::new(nx, ny).expect("grid");
+            check_operator(&UniformOperator::new(grid, kernel));
+        }
+        check_operator(&DirectSum::new(Grid::new(6, 5).expect("grid"), kernel));
+    }
+}
+
+#[test]
+fn fft_operator_matches_direct_sum_on_non_square_grids() {
+    for kernel in [&Love as &dyn Kernel, &Spectral] {
+        for (nx, ny) in [(12, 10), (7, 18), (20, 3)] {
+            let grid = Grid::new(nx, ny).expect("grid");
+            let pressure: Vec<f64> = (0..grid.len()).map(quasi_random).collect();
+            let (mut fast, mut slow) = (vec![0.0; grid.len()], vec![0.0; grid.len()]);
+            UniformOperator::new(grid, kernel).apply(&pressure, &mut fast, &mut []);
+            DirectSum::new(grid, kernel).apply(&pressure, &mut slow, &mut []);
+            let scale = slow.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            for (f, s) in fast.iter().zip(&slow) {
+                assert!((f - s).abs() <= 1e-14 * scale.max(1e-2), "{nx} x {ny}: {f} against {s}");
+            }
+        }
+    }
+}
