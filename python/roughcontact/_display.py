@@ -6,17 +6,15 @@ import base64
 import html as text
 import struct
 import zlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from roughcontact._records import Floats, StressDistribution
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from roughcontact._result import Result
-
-Floats = NDArray[np.float64]
 
 #: Viridis at nine places.
 _VIRIDIS = np.array(
@@ -40,6 +38,63 @@ _PIXELS = 192
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 
+class Shown(Protocol):
+    """What is shown of a result. ``Result`` has it, and this module does not know ``Result``, which uses it."""
+
+    @property
+    def status(self) -> str: ...
+
+    @property
+    def method(self) -> str: ...
+
+    @property
+    def kernel(self) -> str: ...
+
+    @property
+    def grid(self) -> list[int]: ...
+
+    @property
+    def sides(self) -> tuple[float, float]: ...
+
+    @property
+    def area_fraction(self) -> float: ...
+
+    @property
+    def area_fraction_error(self) -> float: ...
+
+    @property
+    def mean_pressure(self) -> float: ...
+
+    @property
+    def penetration(self) -> float: ...
+
+    @property
+    def mean_gap(self) -> float: ...
+
+    @property
+    def rms_pressure(self) -> float: ...
+
+    @property
+    def max_pressure(self) -> float: ...
+
+    @property
+    def energy_error(self) -> float: ...
+
+    @property
+    def wall_seconds(self) -> float: ...
+
+    @property
+    def threads(self) -> int: ...
+
+    @property
+    def pressure(self) -> Floats: ...
+
+    @property
+    def gap(self) -> Floats: ...
+
+    def stress_distribution(self) -> StressDistribution: ...
+
+
 def scale(value: float, unit: str) -> tuple[str, float]:
     """The unit with a prefix that suits the value, and the factor of this prefix."""
     if value == 0.0 or not np.isfinite(value):
@@ -54,7 +109,7 @@ def quantity(value: float, unit: str) -> str:
     return f"{value / size:.4g} {name}"
 
 
-def figure(result: Result) -> Figure:
+def figure(result: Shown) -> Figure:
     """Maps of pressure and gap, and the stress distribution."""
     try:
         from matplotlib.figure import Figure
@@ -84,7 +139,7 @@ def figure(result: Result) -> Figure:
     return drawing
 
 
-def html(result: Result) -> str:
+def html(result: Shown) -> str:
     """Numbers and small maps."""
     nx, ny = result.grid
     rows = [

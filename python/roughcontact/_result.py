@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughcontact import _core
+from roughcontact._display import figure, html
 from roughcontact._foreign import of_keywords
 from roughcontact._keys import Path
 from roughcontact._records import Certificate, ContactSpot, Elements, Floats, Leakage, StressDistribution
@@ -357,13 +358,9 @@ class Result:
 
     def plot(self) -> Figure:
         """Maps of pressure and gap, and the stress distribution, as a figure of matplotlib."""
-        from roughcontact._display import figure
-
         return figure(self)
 
     def _repr_html_(self) -> str:
-        from roughcontact._display import html
-
         return html(self)
 
     def __repr__(self) -> str:

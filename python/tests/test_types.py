@@ -1,6 +1,7 @@
 """Signatures, stubs and docstrings are complete."""
 
 import ast
+import graphlib
 import inspect
 import pathlib
 import subprocess
@@ -36,6 +37,23 @@ def test_sweep_and_surface_have_the_keywords_of_solve():
         assert sweep[name].annotation == solve[name].annotation, name
     for name in of(rc.Surface):
         assert of(rc.Surface)[name].annotation == solve[name].annotation == of(rc.surface)[name].annotation, name
+
+
+def imported(path):
+    """The modules of the package that a module imports anywhere, also in a function or for its types alone."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.module == "roughcontact":
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield (node.module or "").removeprefix("roughcontact.")
+
+
+def test_no_two_modules_import_each_other():
+    names = {path.stem for path in PACKAGE.glob("*.py")}
+    uses = {path.stem: names & set(imported(path)) for path in PACKAGE.glob("*.py")}
+    assert "_records" in uses["_result"], "the imports were not found"
+    # A circle is an error that names its modules.
+    graphlib.TopologicalSorter(uses).prepare()
 
 
 def stubs():
