@@ -12,6 +12,7 @@ use crate::journal::Journal;
 use crate::kept::Kept;
 use crate::levels::{self, Estimate, LevelMean, MOST_REALISATIONS, Samples, Step};
 use crate::plan::{ControlKind, PlannedSurface};
+use crate::row::Row;
 use crate::row_solver::{RowSolver, RunError, Workers};
 use crate::shard::{MAX_ROWS, SweepShape};
 use crate::workers;
@@ -108,6 +109,24 @@ pub struct Ensemble {
     journal: Mutex<Journal>,
 }
 
+impl Realisation {
+    /// Name of the row in a message: `seed 1 on grid 64 (pressure 1e5)`.
+    #[must_use]
+    pub fn describe(&self, control: ControlKind) -> String {
+        format!("seed {} on grid {} ({} {:e})", self.seed, self.side, control.key(), self.load)
+    }
+}
+
+impl Row for Realisation {
+    fn load(&self) -> f64 {
+        self.load
+    }
+
+    fn shared_surface(&self) -> Option<usize> {
+        None
+    }
+}
+
 impl EnsemblePlan {
     /// Numbers of rows. They are numbered by load, level, realisation and grid, with the finer grid first.
     fn shape(&self) -> SweepShape {
@@ -173,6 +192,12 @@ impl Ensemble {
         }
         let journal = Journal::start(folder, Header::whole(shape, plan.settings()), resume)?;
         Ok(Self { plan, folder: folder.to_owned(), journal: Mutex::new(journal) })
+    }
+
+    /// The plan of the ensemble.
+    #[must_use]
+    pub fn plan(&self) -> &EnsemblePlan {
+        &self.plan
     }
 
     /// The rows that are stored so far.

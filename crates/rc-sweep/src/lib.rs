@@ -2,8 +2,13 @@
 //!
 //! A [`SweepPlan`] says which rows are to be solved, and a journal holds the finished rows. Workers solve the rest, and
 //! the result is a table. No row depends on another row, so resumed and sharded sweeps give the rows of an
-//! uninterrupted sweep. The caller provides a [`RowSolver`] that solves a row. This crate does not print and does not
-//! know a command line.
+//! uninterrupted sweep. This crate does not print and does not know a command line.
+//!
+//! There are three ways to say what a row is:
+//!
+//! - [`Sweep::solve_surfaces`] gets a function that makes surfaces, and one contact for all of them.
+//! - [`Sweep::solve`] gets [`RowProblems`] and [`RowResults`], for other contacts, errors and files.
+//! - [`Sweep::run`] gets a [`RowSolver`], for rows that are no contacts, or that something else solves.
 //!
 //! An [`Ensemble`] is a mean over realisations with a wanted error. The error determines the number of realisations and
 //! the fineness of grids. Rows are stored in the same way.
@@ -37,6 +42,7 @@
 pub mod files;
 pub mod memory;
 
+mod contact_rows;
 mod content;
 mod deal;
 mod ensemble;
@@ -53,10 +59,15 @@ mod lock;
 mod merge;
 mod number_or_text;
 mod plan;
+mod problems;
+mod results;
+mod row;
 mod row_solver;
 mod settings;
 mod shard;
+mod solve;
 mod summary;
+mod surfaces;
 mod sweep;
 mod table;
 mod warning;
@@ -76,9 +87,13 @@ pub use lists::{Loads, Seeds};
 pub use merge::{Merged, merge};
 pub use number_or_text::number_or_text;
 pub use plan::{ControlKind, FileMark, MAX_ROWS, PlannedSurface, SweepPlan, SweepRow};
+pub use problems::{RowProblem, RowProblems};
+pub use results::{RowResults, SolvedRow};
+pub use row::Row;
 pub use row_solver::{RowError, RowSolver, RunError, Workers};
 pub use shard::{Shard, SweepShape};
 pub use summary::{SolveContext, Summary, to_json};
+pub use surfaces::{SurfaceError, SweptContact, SweptSurface};
 pub use sweep::Sweep;
 pub use table::n_not_converged;
 pub use warning::{Warning, WarningCode};

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::Path;
 
+use rc_core::Units;
 use rc_solver::Control;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -10,6 +11,7 @@ use serde_json::{Map, Value, json};
 use crate::content::Cells;
 use crate::deal::Deal;
 use crate::error::SweepError;
+use crate::row::Row;
 use crate::shard::{Shard, SweepShape};
 
 pub use crate::shard::MAX_ROWS;
@@ -30,6 +32,15 @@ impl ControlKind {
         match self {
             Self::Pressure => "pressure",
             Self::Penetration => "penetration",
+        }
+    }
+
+    /// The load `value` (Pa or m) in units of λ and E*.
+    #[must_use]
+    pub fn of(self, value: f64, units: Units) -> Control {
+        match self {
+            Self::Pressure => Control::pascals(value, units),
+            Self::Penetration => Control::metres(value, units),
         }
     }
 }
@@ -136,6 +147,16 @@ pub struct SweepRow {
     pub surface: usize,
     /// Pressure (Pa) or penetration (m).
     pub load: f64,
+}
+
+impl Row for SweepRow {
+    fn load(&self) -> f64 {
+        self.load
+    }
+
+    fn shared_surface(&self) -> Option<usize> {
+        Some(self.surface)
+    }
 }
 
 impl SweepPlan {

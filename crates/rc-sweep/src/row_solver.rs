@@ -1,6 +1,6 @@
 //! The interface of the code that solves a row.
 //!
-//! The caller of a sweep provides this code.
+//! The caller of a sweep provides this code, or the problems of the rows, which this crate solves.
 
 use rc_core::quantity::count;
 use thiserror::Error;
