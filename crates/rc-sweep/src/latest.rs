@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 /// The value is, for example, a surface. Its loads follow one another, so one surface at a time is enough for all
 /// workers.
 #[derive(Debug)]
-pub struct Latest<T>(Mutex<Option<Made<T>>>);
+pub(crate) struct Latest<T>(Mutex<Option<Made<T>>>);
 
 /// A value, with the time that was needed to make it.
 #[derive(Debug)]
@@ -31,7 +31,7 @@ impl<T> Latest<T> {
     ///
     /// # Errors
     /// Those of `make`.
-    pub fn get<E>(&self, key: usize, make: impl FnOnce() -> Result<T, E>) -> Result<(Arc<T>, Duration), E> {
+    pub(crate) fn get<E>(&self, key: usize, make: impl FnOnce() -> Result<T, E>) -> Result<(Arc<T>, Duration), E> {
         // A worker that panicked has stored nothing, so the value is still valid.
         let mut latest = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(made) = latest.as_ref().filter(|made| made.key == key) {

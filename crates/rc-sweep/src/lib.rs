@@ -7,7 +7,8 @@
 //! There are three ways to say what a row is:
 //!
 //! - [`Sweep::solve_surfaces`] gets a function that makes surfaces, and one contact for all of them.
-//! - [`Sweep::solve`] gets [`RowProblems`] and [`RowResults`], for other contacts, errors and files.
+//! - [`Sweep::solve`] gets [`RowProblems`] and [`RowResults`], for other contacts, errors and files. The command line
+//!   uses it.
 //! - [`Sweep::run`] gets a [`RowSolver`], for rows that are no contacts, or that something else solves.
 //!
 //! An [`Ensemble`] is a mean over realisations with a wanted error. The error determines the number of realisations and
@@ -80,7 +81,6 @@ pub use error::SweepError;
 pub use folder::{TABLE_FILE, replace_fields};
 pub use job::JobError;
 pub use kept::Kept;
-pub use latest::Latest;
 pub use leakage::LeakageSummary;
 pub use levels::LevelMean;
 pub use lists::{Loads, Seeds};

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use rc_core::{Kernel, Observer};
 use rc_solver::{ContactProblem, Cost, Plan, Solution, SolveError, SolveParams};
 use rc_sweep::memory::Budget;
-use rc_sweep::{Summary, Warning};
+use rc_sweep::{RowProblem, SolvedRow, Summary, Warning};
 
 use super::failure::Failure;
 use super::leakage::SolvedFlow;
@@ -73,16 +73,6 @@ impl<'a> ProblemSetup<'a> {
         Ok(plan)
     }
 
-    /// The plan of this problem with what `other` has prepared.
-    ///
-    /// `other` is a plan on the same surface with the same parameters.
-    ///
-    /// # Errors
-    /// Those of [`ProblemSetup::plan`].
-    pub(crate) fn plan_like(&self, other: &Plan<'static>) -> Result<Plan<'static>, CliError> {
-        other.under(self.contact.control).map_err(|error| self.refuse(&error))
-    }
-
     /// Solves the problem; nothing is written.
     ///
     /// `wall_seconds` counts from `started`.
@@ -94,33 +84,26 @@ impl<'a> ProblemSetup<'a> {
         self.solved(result, started)
     }
 
-    /// The plan of the first of many loads on this surface.
-    ///
-    /// The kernel must be one of rc.
+    /// The problem as a row of a sweep, with `kernel`, which is the kernel of this problem.
     ///
     /// # Errors
-    /// Those of [`ProblemSetup::plan`].
-    pub(crate) fn first_plan(&self) -> Result<Plan<'static>, CliError> {
+    /// [`CliError::Input`] when contact and grid do not go together.
+    pub(crate) fn of_row(&self, kernel: Arc<dyn Kernel + Send + Sync>) -> Result<RowProblem, CliError> {
         self.check_grid()?;
-        let problem = ContactProblem::new(self.surface.source(), self.contact.control);
-        let problem = problem.with_hardness(self.contact.hardness);
-        let plan = problem.with_shared_kernel(self.contact.kernel()?).plan(&self.params());
-        let plan = plan.map_err(|error| self.refuse(&error))?;
-        self.check_flow(&plan)?;
-        Ok(plan)
+        Ok(RowProblem {
+            heights: self.surface.source(),
+            kernel: Some(kernel),
+            control: self.contact.control,
+            hardness: self.contact.hardness,
+            params: self.params(),
+        })
     }
 
-    /// Solves by a plan of this problem.
+    /// The problem with the solution of its row.
     ///
-    /// # Errors
-    /// Those of [`ProblemSetup::solve`].
-    pub(crate) fn solve_planned(
-        self,
-        plan: Plan<'static>,
-        started: Instant,
-        observer: &dyn Observer,
-    ) -> Result<Solved<'a>, CliError> {
-        self.solved(plan.solve(observer), started)
+    /// [`Solved::failure`] then tells of the flow only. The status of the solution says whether it converged.
+    pub(crate) fn solved_row(self, SolvedRow { solution, wall }: SolvedRow) -> Solved<'a> {
+        self.with_flow(solution, None, wall)
     }
 
     /// Solves on the coarsest grid that is fine enough for the contact area.
@@ -165,7 +148,7 @@ impl<'a> ProblemSetup<'a> {
     }
 
     /// Refuses a flow that does not fit into memory.
-    fn check_flow(&self, plan: &Plan<'_>) -> Result<(), CliError> {
+    pub(crate) fn check_flow(&self, plan: &Plan<'_>) -> Result<(), CliError> {
         if !self.contact.keys.leakage {
             return Ok(());
         }
@@ -207,7 +190,11 @@ impl<'a> ProblemSetup<'a> {
             }
             Err(error) => return Err(self.refuse(&error)),
         };
-        let wall = started.elapsed();
+        Ok(self.with_flow(solution, failure, started.elapsed()))
+    }
+
+    /// Computes the flow, if it is asked for.
+    fn with_flow(self, solution: Solution<'a>, failure: Option<Failure>, wall: Duration) -> Solved<'a> {
         let (flow, failure) = match self.contact.keys.leakage.then(|| SolvedFlow::of(&solution, self.contact.units)) {
             Some(Ok(flow)) => (Some(flow), failure),
             Some(Err(error)) => {
@@ -215,10 +202,11 @@ impl<'a> ProblemSetup<'a> {
             }
             None => (None, failure),
         };
-        Ok(Solved { problem: self, solution, failure, flow, warnings: self.warnings(), wall })
+        Solved { problem: self, solution, failure, flow, warnings: self.warnings(), wall }
     }
 
-    fn refuse(&self, error: &SolveError) -> CliError {
+    /// The solver's refusal in SI units.
+    pub(crate) fn refuse(&self, error: &SolveError) -> CliError {
         messages::in_si(error, self.surface, self.contact, self.budget)
     }
 }

@@ -15,7 +15,9 @@ use super::bar::RowBar;
 use super::doubts::{Doubts, refuse_early};
 use super::interrupt;
 use super::messages;
-use super::realisations::Realisations;
+use super::problems::SceneProblems;
+use super::realisations::{MeanResults, Realisations};
+use super::results::Results;
 use super::surfaces::{Surfaces, SweptSurface};
 use crate::error::CliError;
 use crate::scene::surface::Source;
@@ -48,11 +50,13 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
     let handled = (Arc::clone(&ensemble), bar.clone());
     interrupt::install(move || interrupt::end(&handled.0.kept(), None, &handled.1));
     let doubts = Doubts::default();
-    let rows = Realisations::new(surface, (control, threads), (run, &doubts), bar.clone());
     let budget = Budget::new(run.memory_limit);
+    let realisations = Realisations { surface, control };
+    let problems = SceneProblems::new(&realisations, budget);
+    let results = MeanResults { control, results: Results::new(threads, &doubts, run.time_limit, bar.clone()) };
     let factor = surface.memory_factor();
     let workers = |elements: f64| Workers { threads, at_once: budget.solves_at_once(factor * elements) };
-    let finished = ensemble.run(wanted, &rows, workers);
+    let finished = ensemble.solve(wanted, &problems, &results, workers);
     bar.clear();
     let doubted = doubts.tell(run);
     let Some(means) = finished.map_err(messages::of_run)? else {

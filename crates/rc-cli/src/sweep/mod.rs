@@ -11,7 +11,9 @@ mod merge;
 mod messages;
 mod part;
 mod planned;
+mod problems;
 mod realisations;
+mod results;
 mod rows;
 mod specs;
 mod surfaces;
@@ -30,7 +32,9 @@ use rc_sweep::{Shard, Sweep, Workers, to_json};
 use self::args::{SweepArgs, SweepCommand};
 use self::bar::RowBar;
 use self::doubts::Doubts;
-use self::rows::SceneRows;
+use self::problems::SceneProblems;
+use self::results::Results;
+use self::rows::SweepResults;
 use self::surfaces::Surfaces;
 use crate::error::CliError;
 use crate::terminal;
@@ -71,9 +75,10 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
     let handled = (Arc::clone(sweep), bar.clone());
     interrupt::install(move || interrupt::end(&handled.0.kept(), Some(n_rows), &handled.1));
     let doubts = Doubts::default();
-    let rows = SceneRows::new(sweep, surfaces, (threads, &doubts), bar.clone());
-    let at_once = Budget::new(surfaces.run.memory_limit).solves_at_once(surfaces.max_elements());
-    let finished = sweep.run(&rows, Workers { threads, at_once });
+    let budget = Budget::new(surfaces.run.memory_limit);
+    let results = SweepResults { sweep, results: Results::new(threads, &doubts, surfaces.run.time_limit, bar.clone()) };
+    let workers = Workers { threads, at_once: budget.solves_at_once(surfaces.max_elements()) };
+    let finished = sweep.solve(&SceneProblems::new(surfaces, budget), &results, workers);
     bar.clear();
     let table = finished.map_err(messages::of_run)?;
     let kept = sweep.kept();
@@ -104,10 +109,31 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
 #[cfg(test)]
 mod tests {
     use clap::{Args as _, FromArgMatches as _};
-    use rc_sweep::TABLE_FILE;
+    use rc_sweep::{RunError, SweepRow, TABLE_FILE};
     use serde_json::json;
 
+    use super::problems::RowScenes;
     use super::*;
+    use crate::scene::resolve::ContactSetup;
+    use crate::scene::surface::LoadedSurface;
+
+    /// The scenes of a sweep whose first row does not converge, and whose other rows are refused.
+    struct FirstRowHasOneIteration<'a>(&'a Surfaces);
+
+    impl RowScenes<SweepRow> for FirstRowHasOneIteration<'_> {
+        fn load(&self, row: &SweepRow) -> Result<LoadedSurface, CliError> {
+            self.0.load(row)
+        }
+
+        fn contact(&self, row: &SweepRow) -> Result<ContactSetup, CliError> {
+            if row.index > 0 {
+                return Err(CliError::input("not now"));
+            }
+            let mut contact = self.0.contact_of(row)?;
+            contact.params.max_iterations = 1;
+            Ok(contact)
+        }
+    }
 
     /// The arguments of `rc sweep` from these words.
     fn parsed(words: &[&std::ffi::OsStr]) -> SweepArgs {
@@ -124,14 +150,14 @@ mod tests {
         let surfaces = Surfaces::new(&parsed(&words)).expect("surfaces");
         let plan = surfaces.plan().expect("a plan");
         let sweep = Sweep::start(plan, Shard::WHOLE, &out, false).expect("a sweep");
-        let row = sweep.plan().row(0);
         let doubts = Doubts::default();
-        let mut contact = surfaces.contact(&row).expect("a contact");
-        contact.params.max_iterations = 1;
-        let rows = SceneRows::new(&sweep, &surfaces, (1, &doubts), RowBar::new(0, 2, true));
-        let cells = rows.solve_contact(&row, &contact).expect("cells, not an error");
-        assert_eq!(cells["status"], json!("not_converged"));
-        sweep.keep(&row, cells).expect("a row");
+        let results = Results::new(1, &doubts, None, RowBar::new(0, 2, true));
+        let results = SweepResults { sweep: &sweep, results };
+        let scenes = FirstRowHasOneIteration(&surfaces);
+        let problems = SceneProblems::new(&scenes, Budget::UNLIMITED);
+        let refused = sweep.solve(&problems, &results, Workers { threads: 1, at_once: 1 });
+        assert!(matches!(refused, Err(RunError::Refused { kept: 1, .. })), "{refused:?}");
+        assert_eq!(sweep.kept().rows()[&0]["status"], json!("not_converged"));
         let error = execute(&surfaces, &Arc::new(sweep)).expect_err("a row did not converge");
         assert_eq!(error.exit_code(), 3, "{error}");
         assert!(error.to_string().starts_with("1 of 2 rows did not converge"), "{error}");

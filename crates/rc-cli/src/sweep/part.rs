@@ -2,15 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use rc_solver::Plan;
 use rc_sweep::memory::Budget;
-use rc_sweep::{JobError, Shard, SweepPlan, SweepRow};
+use rc_sweep::{JobError, Shard, SweepPlan};
 
+use super::problems::SceneProblems;
 use super::specs::ShardSpec;
 use super::surfaces::Surfaces;
 use crate::error::CliError;
-use crate::scene::surface::LoadedSurface;
-use crate::solve::solved::ProblemSetup;
 
 /// The folder of `shard` below `out`.
 pub(super) fn folder_of(out: &Path, Shard { index, count }: Shard) -> PathBuf {
@@ -52,43 +50,6 @@ pub(super) fn deal(plan: SweepPlan, shard: Shard, surfaces: &Surfaces) -> SweepP
     if shard.count == 1 {
         return plan;
     }
-    let mut latest: Option<Estimated> = None;
-    plan.dealt_by(|row| {
-        if latest.as_ref().is_none_or(|latest| latest.surface != row.surface) {
-            latest = Estimated::load(surfaces, row);
-        }
-        latest.as_mut()?.seconds(surfaces, row)
-    })
-}
-
-/// A surface whose loads are estimated.
-struct Estimated {
-    surface: usize,
-    loaded: LoadedSurface,
-    first: Option<Plan<'static>>,
-}
-
-impl Estimated {
-    fn load(surfaces: &Surfaces, row: &SweepRow) -> Option<Self> {
-        let loaded = surfaces.surface(row).load().ok()?;
-        Some(Self { surface: row.surface, loaded, first: None })
-    }
-
-    /// Processor seconds of `row`.
-    ///
-    /// `None` if they are not known, or if the row will be refused.
-    fn seconds(&mut self, surfaces: &Surfaces, row: &SweepRow) -> Option<f64> {
-        let contact = surfaces.contact(row).ok()?;
-        let kernel = contact.kernel().ok()?;
-        // All machines must get the same estimate, whatever memory they have.
-        let problem =
-            ProblemSetup { surface: &self.loaded, contact: &contact, kernel: &*kernel, budget: Budget::UNLIMITED };
-        let plan = match &self.first {
-            Some(first) => problem.plan_like(first).ok()?,
-            None => problem.first_plan().ok()?,
-        };
-        let seconds = problem.cost(&plan).cpu_seconds;
-        self.first.get_or_insert(plan);
-        seconds
-    }
+    // All machines must get the same estimate, whatever memory they have.
+    plan.dealt_by_estimate(&SceneProblems::new(surfaces, Budget::UNLIMITED))
 }

@@ -1,85 +1,63 @@
-//! Solver of the realisations of an ensemble.
+//! The realisations of a mean: their scenes and their results.
 //!
 //! A realisation is solved as `rc solve` does with its seed and grid.
 
-use std::time::Instant;
+use rc_sweep::{Cells, ControlKind, Realisation, RowError, RowResults, SolvedRow};
 
-use rc_core::Silent;
-use rc_sweep::memory::Budget;
-use rc_sweep::{Cells, ControlKind, Realisation, RowError, RowSolver};
-
-use super::bar::RowBar;
-use super::doubts::Doubts;
+use super::problems::{RowScenes, SceneContact, SceneProblems};
+use super::results::{self, Results};
 use super::surfaces::SweptSurface;
 use crate::error::CliError;
-use crate::run::stop::Stop;
-use crate::scene::keys::{RunKeys, SurfaceKeys};
-use crate::scene::resolve;
+use crate::scene::keys::SurfaceKeys;
+use crate::scene::resolve::{self, ContactSetup};
+use crate::scene::surface::LoadedSurface;
 use crate::scene::values::GridSpec;
-use crate::solve::solved::ProblemSetup;
 
-/// Solves the realisations of a surface.
+/// The realisations of a surface.
 pub(super) struct Realisations<'a> {
-    surface: &'a SweptSurface,
-    control: ControlKind,
-    /// Number of all threads.
-    threads: usize,
-    run: &'a RunKeys,
-    doubts: &'a Doubts,
-    limit: Stop,
-    bar: RowBar,
+    pub(super) surface: &'a SweptSurface,
+    pub(super) control: ControlKind,
 }
 
-impl<'a> Realisations<'a> {
-    /// The realisations of `surface`. Their time limit begins now.
-    pub(super) fn new(
-        surface: &'a SweptSurface,
-        (control, threads): (ControlKind, usize),
-        (run, doubts): (&'a RunKeys, &'a Doubts),
-        bar: RowBar,
-    ) -> Self {
-        Self { surface, control, threads, run, doubts, limit: Stop::at(Instant::now(), run.time_limit), bar }
-    }
-
-    fn solve_one(&self, row: &Realisation) -> Result<Cells, CliError> {
-        let started = Instant::now();
+impl RowScenes<Realisation> for Realisations<'_> {
+    fn load(&self, row: &Realisation) -> Result<LoadedSurface, CliError> {
         let grid = Some(GridSpec::square(row.side));
         let keys = SurfaceKeys { seed: Some(row.seed), grid, ..self.surface.setup.keys.clone() };
-        let surface = resolve::surface(keys)?.load()?;
-        let contact = self.surface.contact(self.control, row.load)?;
-        let kernel = contact.kernel()?;
-        let problem = ProblemSetup {
-            surface: &surface,
-            contact: &contact,
-            kernel: &*kernel,
-            budget: Budget::new(self.run.memory_limit),
-        };
-        let summary = problem.solve(started, &Silent)?.summary(self.threads);
-        // Realisations have no order.
-        self.doubts.note(0, &summary.warnings);
-        Ok(summary.cells())
+        resolve::surface(keys)?.load()
+    }
+
+    fn contact(&self, row: &Realisation) -> Result<ContactSetup, CliError> {
+        self.surface.contact(self.control, row.load)
     }
 }
 
-impl RowSolver<Realisation> for Realisations<'_> {
-    type Error = CliError;
+/// The results of realisations.
+pub(super) struct MeanResults<'a> {
+    pub(super) control: ControlKind,
+    pub(super) results: Results<'a>,
+}
 
-    fn solve(&self, row: &Realisation) -> Result<Cells, RowError<CliError>> {
-        self.solve_one(row).map_err(|error| match error {
-            CliError::Input(message) => {
-                let (seed, side, load) = (row.seed, row.side, row.load);
-                let place = format_args!("seed {seed} on grid {side} ({} {load:e}): {message}", self.control.key());
-                RowError::Refused(CliError::input(place))
-            }
-            other => RowError::Failed(other),
-        })
+impl<S: RowScenes<Realisation>> RowResults<SceneProblems<'_, S>, Realisation> for MeanResults<'_> {
+    fn cells(
+        &self,
+        _row: &Realisation,
+        surface: &LoadedSurface,
+        contact: &SceneContact,
+        solved: SolvedRow,
+    ) -> Result<Cells, CliError> {
+        // Realisations have no order.
+        self.results.cells(0, (surface, contact), solved, None)
+    }
+
+    fn failed(&self, row: &Realisation, error: CliError) -> RowError<CliError> {
+        results::failed(error, || row.describe(self.control))
     }
 
     fn row_kept(&self) {
-        self.bar.one_more();
+        self.results.row_kept();
     }
 
     fn should_stop(&self) -> bool {
-        self.limit.reason().is_some()
+        self.results.should_stop()
     }
 }

@@ -99,7 +99,7 @@ impl Surfaces {
     ///
     /// # Errors
     /// [`CliError::Input`] for keys of the contact. They are the same for all rows of a surface.
-    pub(super) fn contact(&self, row: &SweepRow) -> Result<ContactSetup, CliError> {
+    pub(super) fn contact_of(&self, row: &SweepRow) -> Result<ContactSetup, CliError> {
         self.all[row.surface].contact(self.control, row.load)
     }
 
