@@ -24,6 +24,7 @@ mod rough;
 mod stress_distribution;
 mod suspicions;
 mod swap;
+mod sweep;
 mod westergaard;
 
 use std::path::{Path, PathBuf};
