@@ -16,19 +16,23 @@ const MULTIPLES: [usize; 6] = [8, 9, 10, 12, 14, 15];
 /// Maximum prime factor of a side that is halved to an odd side.
 const GREATEST_FACTOR: usize = 13;
 
-/// The heights on nested coarser grids, finest first, each with half the elements per side.
-///
-/// The grids end where halving does not leave whole elements, or leaves less than `smallest_side` of them along the
-/// larger side. A long cell needs coarser grids too.
-pub(crate) fn coarsen(heights: &Field, smallest_side: usize) -> Vec<Field> {
-    coarsen_above(heights, smallest_side, (f64::NEG_INFINITY, Boundary::Periodic), half)
+/// Whether heights below the [`floor`] are kept or count as the floor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pits {
+    Kept,
+    Filled,
 }
 
-/// The heights on coarser grids of any sizes, for starts on finer grids.
+/// The heights on coarser grids of the same cell, each sampled from the one before.
 ///
-/// Each grid is sampled from the one before. Heights below the [`floor`] count as the floor.
-pub(crate) fn coarsen_to(heights: &Field, boundary: Boundary, coarser: impl Iterator<Item = Grid>) -> Vec<Field> {
-    let floor = floor(heights);
+/// Starts on finer grids come from heights with filled pits.
+pub(crate) fn coarsen(
+    heights: &Field,
+    boundary: Boundary,
+    pits: Pits,
+    coarser: impl IntoIterator<Item = Grid>,
+) -> Vec<Field> {
+    let floor = if pits == Pits::Kept { f64::NEG_INFINITY } else { floor(heights) };
     let mut levels: Vec<Field> = Vec::new();
     for grid in coarser {
         let next = sample(levels.last().unwrap_or(heights), grid, (floor, boundary));
@@ -37,36 +41,28 @@ pub(crate) fn coarsen_to(heights: &Field, boundary: Boundary, coarser: impl Iter
     levels
 }
 
-/// The heights on nested coarser grids as [`coarsen`], for starts on finer grids.
+/// The nested grids below `finest`, finest first, each with half the elements per side.
 ///
-/// Heights below the [`floor`] count as the floor.
-pub(crate) fn coarsen_without_pits(heights: &Field, smallest_side: usize) -> Vec<Field> {
-    coarsen_above(heights, smallest_side, (floor(heights), Boundary::Periodic), half)
+/// The grids end where halving does not leave whole elements, or leaves less than `smallest_side` of them along the
+/// larger side. A long cell needs coarser grids too.
+pub(crate) fn halved(finest: Grid, smallest_side: usize) -> impl Iterator<Item = Grid> {
+    nested(finest, smallest_side, half)
 }
 
-/// The heights on nested coarser grids of any size, without pits.
+/// The nested grids below a grid of any size, as [`halved`].
 ///
 /// The next grid has half the elements of an even side, and about half the elements of an odd one.
-pub(crate) fn nest_without_pits(heights: &Field, smallest_side: usize, boundary: Boundary) -> Vec<Field> {
-    coarsen_above(heights, smallest_side, (floor(heights), boundary), |n| Some(about_half(n)))
+pub(crate) fn about_halved(finest: Grid, smallest_side: usize) -> impl Iterator<Item = Grid> {
+    nested(finest, smallest_side, |side| Some(about_half(side)))
 }
 
-fn coarsen_above(
-    heights: &Field,
-    smallest_side: usize,
-    (floor, boundary): (f64, Boundary),
-    next_side: impl Fn(usize) -> Option<usize>,
-) -> Vec<Field> {
-    let mut levels: Vec<Field> = Vec::new();
-    loop {
-        let finer = levels.last().unwrap_or(heights);
-        let (nx, ny) = (finer.grid().nx(), finer.grid().ny());
+fn nested(finest: Grid, smallest_side: usize, next_side: fn(usize) -> Option<usize>) -> impl Iterator<Item = Grid> {
+    let next = move |finer: &Grid| {
+        let (nx, ny) = (finer.nx(), finer.ny());
         let is_large = nx.max(ny) >= 2 * smallest_side && nx.min(ny) >= 2 * SMALLEST_WIDTH.min(smallest_side);
-        let (true, Some(nx), Some(ny)) = (is_large, next_side(nx), next_side(ny)) else { return levels };
-        let Ok(grid) = finer.grid().with_elements(nx, ny) else { return levels };
-        let next = sample(finer, grid, (floor, boundary));
-        levels.push(next);
-    }
+        if is_large { finer.with_elements(next_side(nx)?, next_side(ny)?).ok() } else { None }
+    };
+    std::iter::successors(Some(finest), next).skip(1)
 }
 
 fn half(side: usize) -> Option<usize> {
@@ -134,7 +130,7 @@ mod tests {
     fn halving_samples_a_resolved_wave_at_the_coarse_centres() {
         let wave = |DVec2 { x, y }: DVec2| (2.0 * PI * (5.0 * x + 3.0 * y)).cos();
         let fine = Field::from_fn(Grid::new(160, 128).expect("grid"), wave);
-        let coarse = coarsen(&fine, 64);
+        let coarse = coarsen(&fine, Boundary::Periodic, Pits::Kept, halved(fine.grid(), 64));
         let grid = Grid::new(80, 64).expect("grid");
         assert_eq!(coarse.len(), 1, "80 x 64 is too small to halve again");
         let exact = Field::from_fn(grid, wave);
@@ -149,7 +145,7 @@ mod tests {
         let wave = |at: DVec2| (2.0 * PI * at.x).cos() * (2.0 * PI * at.y).cos();
         let mut heights = Field::from_fn(grid, wave);
         heights.values_mut()[7 * 128 + 40] -= 1e6;
-        let coarse = coarsen_without_pits(&heights, 32);
+        let coarse = coarsen(&heights, Boundary::Periodic, Pits::Filled, halved(heights.grid(), 32));
         for level in &coarse {
             assert!(level.max() < 1.6, "a summit of {} on {}", level.max(), level.grid());
         }
@@ -159,13 +155,13 @@ mod tests {
     fn a_grooved_plateau_keeps_its_grooves() {
         let grooved = |at: DVec2| if (8.0 * at.x).fract() < 0.2 { -1.0 } else { 0.0 };
         let heights = Field::from_fn(Grid::square(128).expect("a grid"), grooved);
-        let coarse = coarsen_without_pits(&heights, 32);
+        let coarse = coarsen(&heights, Boundary::Periodic, Pits::Filled, halved(heights.grid(), 32));
         assert!(coarse[0].min() < -0.5, "grooves of {}", coarse[0].min());
     }
 
     #[test]
     fn odd_sides_are_not_halved() {
-        assert!(coarsen(&Field::zeros(Grid::new(256, 255).expect("grid")), 2).is_empty());
+        assert!(halved(Grid::new(256, 255).expect("grid"), 2).next().is_none());
     }
 
     #[test]
@@ -175,7 +171,7 @@ mod tests {
             let along_y = if ny < 64 { 0.0 } else { 2.0 };
             let wave = |DVec2 { x, y }: DVec2| (2.0 * PI * (3.0 * x + along_y * y)).cos();
             let fine = Field::from_fn(Grid::new(nx, ny).expect("grid"), wave);
-            let coarser = nest_without_pits(&fine, 64, Boundary::Periodic);
+            let coarser = coarsen(&fine, Boundary::Periodic, Pits::Filled, about_halved(fine.grid(), 64));
             let coarsest = coarser.last().expect("coarser grids").grid();
             assert!((64..128).contains(&coarsest.nx().max(coarsest.ny())) || coarsest.ny() < 16, "{coarsest}");
             let mut finer = fine.grid();
@@ -198,7 +194,7 @@ mod tests {
         let ramp = |DVec2 { x, y }: DVec2| x - 2.0 * y + 0.1 * (x * y).powi(2);
         for (nx, ny) in [(256, 256), (300, 130), (1001, 64)] {
             let fine = Field::from_fn(Grid::new(nx, ny).expect("grid"), ramp);
-            for level in nest_without_pits(&fine, 32, Boundary::Free) {
+            for level in coarsen(&fine, Boundary::Free, Pits::Filled, about_halved(fine.grid(), 32)) {
                 let exact = Field::from_fn(level.grid(), ramp);
                 let errors = exact.values().iter().zip(level.values()).map(|(e, c)| (e - c).abs());
                 assert!(errors.fold(0.0, f64::max) < 1e-12, "{} under {}", level.grid(), fine.grid());

@@ -3,13 +3,13 @@
 //! Each grid prepares the start on the next.
 
 use rayon::prelude::*;
-use rc_core::{Event, Field, Kernel, Observer};
+use rc_core::{Boundary, Event, Field, Kernel, Observer};
 
 use crate::descent::info::{LevelInfo, LevelValues};
 use crate::descent::outcome::Outcome;
 use crate::descent::run::{DescentObserver, Goal};
 use crate::descent::state::{Descent, Start};
-use crate::grid::coarser::nest_without_pits;
+use crate::grid::coarser::{Pits, about_halved, coarsen};
 use crate::grid::operators::{certifying_operators, uniform_operators};
 use crate::grid::prolongation::prolong;
 use crate::problem::checked::Problem;
@@ -18,7 +18,12 @@ use crate::problem::params::IterationParams;
 /// Minimum number of elements per side of the coarsest grid.
 ///
 /// A smaller grid costs nothing, so coarser ones do not prepare it.
-pub(super) const SMALLEST_SIDE: usize = 64;
+const SMALLEST_SIDE: usize = 64;
+
+/// The heights on the coarser of nested grids, finest first.
+pub(super) fn coarser_heights(heights: &Field, boundary: Boundary) -> Vec<Field> {
+    coarsen(heights, boundary, Pits::Filled, about_halved(heights.grid(), SMALLEST_SIDE))
+}
 
 /// The data that the levels of nested grids share.
 pub(crate) struct NestedGrids<'a> {
@@ -47,7 +52,7 @@ pub(crate) struct FinestGrid<'a> {
 impl<'a> NestedGrids<'a> {
     /// Solves on coarser grids, and then on the grid of `heights`.
     pub(crate) fn solve(&self, heights: &'a Field) -> FinestGrid<'a> {
-        self.solve_from(&nest_without_pits(heights, SMALLEST_SIDE, self.problem.support.boundary), heights)
+        self.solve_from(&coarser_heights(heights, self.problem.support.boundary), heights)
     }
 
     /// Solves on the coarser grids, and then on the grid of `heights`.

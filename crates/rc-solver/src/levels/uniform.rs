@@ -5,11 +5,8 @@
 use rc_core::{Boundary, Field, Kernel, Observer};
 
 use crate::descent::info::GridSolution;
-use crate::grid::coarser::nest_without_pits;
 use crate::grid::full_contact;
-use crate::levels::nested_grids::FinestGrid;
-use crate::levels::nested_grids::NestedGrids;
-use crate::levels::nested_grids::SMALLEST_SIDE;
+use crate::levels::nested_grids::{FinestGrid, NestedGrids, coarser_heights};
 use crate::problem::checked::{Load, Problem};
 use crate::problem::error::ProblemError;
 use crate::problem::params::IterationParams;
@@ -46,7 +43,7 @@ pub(crate) fn solve_uniform(
 ) -> Result<GridSolution, ProblemError> {
     let problem = Problem::check_on(Support::of(kernel, heights.grid()), heights, load, params)?;
     let boundary = problem.support.boundary;
-    let coarser = nest_without_pits(heights, SMALLEST_SIDE, boundary);
+    let coarser = coarser_heights(heights, boundary);
     if boundary == Boundary::Periodic
         && let Some(mean_pressure) = full_contact::mean_pressure(&problem)
         && let Some(solution) = full_contact::solve((heights, &coarser), kernel, mean_pressure, &problem, params.bound)

@@ -1,10 +1,10 @@
 //! Refusals before any work: parameters out of range, and scenes beyond the budget.
 
-use rc_core::{Field, Silent};
+use rc_core::{Boundary, Field, Silent};
 use rc_quadtree::paper::{Mask, MeshKind, MeshParams, count};
 
 use crate::descent::info::SolveInfo;
-use crate::grid::coarser::coarsen_without_pits;
+use crate::grid::coarser::{Pits, coarsen, halved};
 use crate::levels::uniform::solve_uniform;
 use crate::paper::error::GaussSeidelError;
 use crate::paper::half_space::HalfSpace;
@@ -68,7 +68,7 @@ pub(super) fn estimate(
     control: Control,
     params: &GaussSeidelParams,
 ) -> Result<Estimate, GaussSeidelError> {
-    let coarse = coarsen_without_pits(heights, ESTIMATE_SIDE / 2);
+    let coarse = coarsen(heights, Boundary::Periodic, Pits::Filled, halved(heights.grid(), ESTIMATE_SIDE / 2));
     let coarse = std::iter::once(heights).chain(&coarse).find(|field| field.grid().nx() <= ESTIMATE_SIDE);
     // A grid that cannot be halved is its own coarse grid.
     let coarse = coarse.unwrap_or(heights);

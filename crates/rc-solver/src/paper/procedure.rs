@@ -2,11 +2,11 @@
 //!
 //! The procedure solves Eq. 4 on the elements in contact.
 
-use rc_core::{Event, Field, Observer, Operator, Snapshot};
+use rc_core::{Boundary, Event, Field, Observer, Operator, Snapshot};
 use rc_quadtree::paper::{Key, Mask, Mesh, MeshKind, MeshParams, transfer};
 
 use crate::descent::info::LevelInfo;
-use crate::grid::coarser::coarsen;
+use crate::grid::coarser::{Pits, coarsen, halved};
 use crate::grid::uniform_operator::UniformOperator;
 use crate::paper::coefficients::{Coefficients, Site};
 use crate::paper::error::GaussSeidelError;
@@ -71,7 +71,8 @@ impl<'a> Procedure<'a> {
         let grid = heights.grid();
         let side = grid.nx();
         let mut pyramid = vec![heights.clone()];
-        pyramid.extend(coarsen(heights, 1).into_iter().take(LARGEST_DOUBLINGS as usize));
+        let coarser = halved(grid, 1).take(LARGEST_DOUBLINGS as usize);
+        pyramid.extend(coarsen(heights, Boundary::Periodic, Pits::Kept, coarser));
         // Elements are at most as large as those whose heights are known.
         let mut mesh_params = mesh_params(side, params.ring);
         mesh_params.base = mesh_params.base.max(side >> (pyramid.len() - 1));

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use rc_core::{Boundary, Field, Grid, HeightField, HeightSource};
 use rc_quadtree::{TILE, put_tile};
 
-use crate::grid::coarser::coarsen_to;
+use crate::grid::coarser::{Pits, coarsen};
 use crate::problem::checked::HeightStatistics;
 use crate::problem::error::ProblemError;
 use crate::tiles::heights::bounds::Bounds;
@@ -89,7 +89,7 @@ impl<'a> Heights<'a> {
         let bounds = Bounds::of_map(&map, &extremes);
         let coarser = (0..ladder.n_levels()).rev().map(|level| ladder.grid(level));
         let mut grids: Vec<WholeGrid<'a>> =
-            coarsen_to(&map, boundary, coarser).into_iter().map(WholeGrid::new).collect();
+            coarsen(&map, boundary, Pits::Filled, coarser).into_iter().map(WholeGrid::new).collect();
         grids.reverse();
         grids.push(map);
         Ok(Self { ladder, grids, interpolation: None, bounds, extremes })

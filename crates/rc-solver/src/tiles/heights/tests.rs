@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use rc_core::testing::quasi_random;
-use rc_core::{DVec2, Field, Grid, HeightField, HeightSource};
+use rc_core::{Boundary, DVec2, Field, Grid, HeightField, HeightSource};
 use rc_fft::Complex64;
 
-use crate::grid::coarser::coarsen;
+use crate::grid::coarser::{Pits, coarsen, halved};
 use crate::problem::error::ProblemError;
 use crate::tiles::heights::on_demand::Heights;
 use rc_quadtree::TILE;
@@ -260,7 +260,7 @@ fn a_surface_that_the_finest_grid_barely_resolves_is_sampled_there() {
     let field = surface.sample(square(120));
     assert!(worst_tile(&heights, &field) == 0.0);
     assert_eq!(extremes(&heights), extremes_of(&field));
-    assert_eq!(heights.base(), &coarsen(&field, 60)[0]);
+    assert_eq!(heights.base(), &coarsen(&field, Boundary::Periodic, Pits::Kept, halved(field.grid(), 60))[0]);
 }
 
 #[test]
@@ -279,7 +279,7 @@ fn a_map_keeps_its_values_and_its_bounds_are_its_maxima() {
     let map = Field::from_fn(square(400), |DVec2 { x, y }| 3.0 + quasi_random((997.0 * x + 31.0 * y * 400.0) as usize));
     let heights = Heights::new(HeightSource::Map(&map), [50; 2]).expect("finite");
     assert!(worst_tile(&heights, &map) == 0.0, "the finest level is the map");
-    let coarser = coarsen(&map, 50);
+    let coarser = coarsen(&map, Boundary::Periodic, Pits::Kept, halved(map.grid(), 50));
     assert!(worst_tile(&heights, &coarser[0]) == 0.0, "the next is interpolated between its values");
     assert_eq!(heights.base(), &coarser[2]);
     assert_eq!(extremes(&heights), extremes_of(&map));
