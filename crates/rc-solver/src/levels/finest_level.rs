@@ -205,8 +205,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let reached = last.converged && !observer.observer.should_stop();
         add_work(&mut info, &descent.info());
         let pressure = descent.into_pressure();
-        candidates.heights =
-            element_heights(setup.heights, &candidates.elements, Some((&near.elements, &near.heights)));
+        candidates.heights = candidate_heights(setup, &candidates.elements, Some((&near.elements, &near.heights)));
         let current = MeshStart { elements: near.elements, pressure };
         (Self { setup, tables, candidates, current, info }, reached)
     }
@@ -299,8 +298,18 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
 
 impl Candidates {
     fn new(setup: &Setup<'_>, elements: Mesh) -> Self {
-        Self { heights: element_heights(setup.heights, &elements, None), elements }
+        Self { heights: candidate_heights(setup, &elements, None), elements }
     }
+}
+
+/// The heights of `elements`, of which some may be `known`.
+fn candidate_heights(setup: &Setup<'_>, elements: &Mesh, known: Option<(&Mesh, &[f64])>) -> Vec<f64> {
+    element_heights(setup.heights, elements, known, out_of_reach(setup, elements))
+}
+
+/// The height of values that stand for no element.
+fn out_of_reach(setup: &Setup<'_>, elements: &Mesh) -> f64 {
+    setup.problem.out_of_reach(elements.finest().sides().into_iter().product())
 }
 
 /// Elements where the start may touch according to the quick operator.
@@ -347,10 +356,11 @@ impl NearContact {
             before.has(sides, place) || cells.any(|i| pressure[i] > 0.0 || gap[i] < near)
         };
         let elements = candidates.elements.chosen(is_near);
-        // The vectors are moved one after the other. Values that fill up a level are as far from contact as possible.
+        // The vectors are moved one after the other. Nothing presses on values that fill up a level.
+        let lowest = out_of_reach(setup, &elements);
         let chosen = |values: Vec<f64>, elsewhere: f64| candidates.elements.moved(&elements, &values, elsewhere);
-        let heights = chosen(std::mem::take(&mut candidates.heights), f64::MIN);
-        let (gap, pressure) = (chosen(gap, f64::MAX), chosen(pressure, 0.0));
+        let heights = chosen(std::mem::take(&mut candidates.heights), lowest);
+        let (gap, pressure) = (chosen(gap, setup.problem.offset() - lowest), chosen(pressure, 0.0));
         Self { elements, heights, pressure, gap }
     }
 }

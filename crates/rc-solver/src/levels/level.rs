@@ -67,7 +67,7 @@ pub(crate) fn solve_coarse_level(
         fresh: Box::new(setup.quick_operator(hierarchy, &response, &start)),
     };
     let MeshStart { elements, pressure } = start;
-    let heights = element_heights(setup.heights, &elements, None);
+    let heights = element_heights(setup.heights, &elements, None, setup.problem.out_of_reach(grid.len()));
     let mut descent = Descent::new(&heights, grid, operators, &setup.problem, Start::Pressure(pressure));
     let goal = Goal { tolerance, max_iterations: setup.params.max_iterations, certify: None };
     let outcome = descent.run(goal, &DescentObserver { observer, mesh: &elements });

@@ -90,6 +90,9 @@ pub(crate) struct Problem {
     pub(crate) support: Support,
 }
 
+/// Depth of a height that is out of reach, in units of the sum of height range and displacement ([`Problem::out_of_reach`]).
+const OUT_OF_REACH: f64 = 100.0;
+
 impl Problem {
     pub(crate) fn check(
         heights: &Field,
@@ -176,6 +179,16 @@ impl Problem {
     /// It is the height range, unless that is the depth of a pit.
     pub(crate) fn depth_range(&self) -> f64 {
         self.h_range.min(4.0 * (self.h_max - self.h_mean))
+    }
+
+    /// A height that is out of reach of the body on a level of `n` elements.
+    ///
+    /// It stands where vectors have a value but the surface has no element. λ = 1 and E* = 1. The load σ0 on a single
+    /// element displaces it by less than 2 n σ0, and no pressure of this load displaces any place by more. A
+    /// penetration Δ needs less than the load 5 Δ. Gaps at this height therefore stay larger than all others.
+    pub(crate) fn out_of_reach(&self, n: usize) -> f64 {
+        let (Control::MeanPressure(value) | Control::Penetration(value)) = self.control;
+        self.h_max - OUT_OF_REACH * (self.h_range + n as f64 * value.abs())
     }
 
     /// The constant c in `g = L p - h + c`.

@@ -1,57 +1,33 @@
 //! Heights of elements: at the centres of the smallest elements, and means over larger ones.
 
 use rayon::prelude::*;
-use rc_core::Boundary;
 use rc_quadtree::{CELLS, Elements, TileSet, means_of_quarter, quarters};
 
-use crate::problem::checked::HeightStatistics;
 use crate::tiles::heights::on_demand::Heights;
 use crate::tiles::mesh::Mesh;
 
-/// Depth of places without an element, in units of the height range.
-///
-/// Displacements there lack their smooth part. It differs from the smooth part at elements by at most the height range.
-/// Gaps there are therefore at least nine times the height range.
-const FAR_BELOW: f64 = 10.0;
-
-/// Height of places without an element on a patch with free borders, in λ.
-///
-/// Displacements of a patch may be any multiple of the height range, and those of such places lack their smooth part.
-const BELOW_ALL: f64 = -1e100;
-
 /// Heights of the elements that this rank has.
 ///
-/// Heights of elements of `known` are taken from there. Values without an element are never in contact. Those that fill
-/// up a vector have the minimum height, and those beyond a level are far below. On a patch with free borders both are
-/// below all displacements.
-pub(crate) fn element_heights(heights: &Heights<'_>, mesh: &Mesh, known: Option<(&Mesh, &[f64])>) -> Vec<f64> {
-    let HeightStatistics { greatest, least, .. } = heights.extremes();
-    let none = match mesh.finest().boundary() {
-        Boundary::Free => BELOW_ALL,
-        Boundary::Periodic if mesh.finest().is_whole() => least,
-        Boundary::Periodic => least - FAR_BELOW * (greatest - least),
-    };
-    let over_ranks = known.filter(|(known, _)| !known.ranks().are_alone());
-    // Known heights of other ranks come first. A height is never NaN.
-    let mut result = match over_ranks {
-        Some((known, values)) => known.moved(mesh, values, f64::NAN),
-        None => vec![none; mesh.n_own()],
+/// Heights of elements of `known` are taken from there. Values that fill up a vector, and those beyond a level, get the
+/// height `elsewhere`, which must be out of reach ([`Problem::out_of_reach`]).
+///
+/// [`Problem::out_of_reach`]: crate::problem::checked::Problem::out_of_reach
+pub(crate) fn element_heights(
+    heights: &Heights<'_>,
+    mesh: &Mesh,
+    known: Option<(&Mesh, &[f64])>,
+    elsewhere: f64,
+) -> Vec<f64> {
+    let mut result = match known {
+        Some((known, values)) => known.moved(mesh, values, elsewhere),
+        None => vec![elsewhere; mesh.n_own()],
     };
     for (coarser, places, values) in mesh.own_levels() {
         let tiles = &mesh.levels()[coarser];
-        let known = known.filter(|_| over_ranks.is_none());
-        let known = known.map(|(known, values)| (&known.levels()[coarser], &values[known.cells(coarser)]));
+        let known = known.map(|(known, _)| &known.levels()[coarser]);
         let (cells, _) = result[values].as_chunks_mut::<CELLS>();
         cells.par_iter_mut().zip(places).with_min_len(16).for_each(|(cells, &place)| {
-            let known = known.and_then(|(tiles, values)| {
-                let tile = tiles.find(i64::from(place[0]), i64::from(place[1]))?;
-                Some(&values[tile * CELLS..][..CELLS])
-            });
-            if let Some(known) = known {
-                cells.copy_from_slice(known);
-                return;
-            }
-            if over_ranks.is_some() && !cells[0].is_nan() {
+            if known.is_some_and(|known| known.find(place[0].into(), place[1].into()).is_some()) {
                 return;
             }
             heights.tile(tiles.sides(), place.map(|i| i as usize), cells);
@@ -106,7 +82,7 @@ mod tests {
         let tiles = [(32, [16, 16]), (16, [4, 4]), (8, [0, 0])];
         let elements =
             Elements::new(tiles.map(|(per_side, place)| TileSet::new([8 * per_side; 2], vec![place])).to_vec());
-        let values = element_heights(&heights, &Mesh::from(elements.clone()), None);
+        let values = element_heights(&heights, &Mesh::from(elements.clone()), None, 0.0);
         for (coarser, (_, [column, row])) in tiles.into_iter().enumerate() {
             let (n, start) = (1 << coarser, elements.cells(coarser).start);
             for cell in 0..CELLS {
