@@ -5,19 +5,20 @@
 use rc_core::Grid;
 use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
 
-use crate::grid::extension::finest::GridExtension;
+use crate::grid::extension::pyramid::Extension;
+use crate::grid::extension::rows::Shares;
 use crate::grid::passes::{read_rows, write_rows};
 use crate::parallel::Tasks;
 
 /// The approximate inverse on a periodic grid.
 pub(super) struct Inverse {
     pub(super) symbol: SymbolTable<f32>,
-    pub(super) extension: GridExtension,
+    pub(super) extension: Extension,
 }
 
 impl Inverse {
     pub(super) fn new(grid: Grid, symbol: SymbolTable<f32>) -> Self {
-        Self { symbol, extension: GridExtension::new(grid) }
+        Self { symbol, extension: Extension::new([grid.nx(), grid.ny()]) }
     }
 
     /// Applies the inverse to values that are zero where elements are not active.
@@ -29,11 +30,11 @@ impl Inverse {
         write_rows(convolution, &|i, rows| {
             let here = i * len..i * len + rows.len();
             rows.copy_from_slice(&values[here.clone()]);
-            filled.fill(i * BLOCK_ROWS, &active[here], rows);
+            filled.fill(i * BLOCK_ROWS, Shares::Active(&active[here]), rows);
         });
         convolution.apply_symbol(symbol);
         let tasks = Tasks::new(values.chunks_mut(len));
         read_rows(convolution, &|i, rows| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(rows)));
-        extension.gather(active, values);
+        extension.gather(Shares::Active(active), values);
     }
 }

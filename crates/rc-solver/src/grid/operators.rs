@@ -94,7 +94,7 @@ impl BlockOperator<f32> for UniformCorrections {
 impl PreconditionedOperator for UniformCorrections {
     fn set_active(&mut self, active: &[bool]) {
         let active = self.margin.as_mut().map_or(active, |margin| margin.set_active(active));
-        self.inverse.extension.set_active(active);
+        self.inverse.extension.set_active(active, |active| f32::from(u8::from(active)));
     }
 
     fn precondition(&mut self, active: &[bool], values: &mut [f32]) {

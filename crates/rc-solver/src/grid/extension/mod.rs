@@ -12,6 +12,5 @@
 //!
 //! `docs/measurements-uniform.md` has the iterations with and without the extension.
 
-pub(crate) mod finest;
 pub(crate) mod pyramid;
 pub(crate) mod rows;

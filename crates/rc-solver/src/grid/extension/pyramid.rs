@@ -1,184 +1,202 @@
-//! Values on a grid of squares that are active in part, and on coarser grids.
+//! F and its transpose, from the values of a grid over means on coarser and coarser grids.
 
-use crate::grid::extension::rows::{gather, interpolate, means};
+use crate::grid::extension::rows::{Parts, Shares, TASK, collect, interpolate, means};
 use crate::parallel;
 
-/// Minimum number of values that one task works on.
-const TASK: usize = 4096;
-
-/// The part of its value that a square takes from its own active elements.
-///
-/// x is the part of its elements that are active. The square takes the rest from larger squares.
-/// `docs/measurements-uniform.md` compares x^(3/4) with other powers.
-pub(crate) fn own_part(x: f32) -> f32 {
-    x.sqrt() * x.sqrt().sqrt()
+/// A grid of squares of 2 × 2 values of the next finer grid.
+struct Level {
+    nx: usize,
+    parts: Parts,
+    values: Vec<f32>,
 }
 
-/// The two shares of a square.
-///
-/// The first multiplies the mean over all its elements. The second multiplies the value around it.
-fn shares(x: f32) -> [f32; 2] {
-    let own = own_part(x);
-    // The mean over all elements is x times the mean over the active ones.
-    if x > 0.0 { [own / x, 1.0 - own] } else { [0.0, 1.0] }
+impl Level {
+    /// Sets the values to means over a finer grid of rows of `nx` values. `part` is applied to each of these.
+    fn take_means<T: Copy + Sync>(&mut self, nx: usize, finer: &[T], part: impl Fn(T) -> f32 + Sync) {
+        for_each_row(&mut self.values, self.nx, |iy, row| {
+            let line = |y: usize| finer.get(y * nx..(y + 1) * nx);
+            means([line(2 * iy), line(2 * iy + 1)], &part, row);
+        });
+    }
+
+    /// Changes rows of `nx` own values of the finer grid, from row `first` on, to u.
+    fn fill(&self, first: usize, nx: usize, shares: Shares<'_>, rows: &mut [f32]) {
+        let (mut line, mut around) = (Vec::new(), vec![0.0; nx]);
+        for (iy, row) in rows.chunks_mut(nx).enumerate() {
+            interpolate(&self.values, self.nx, first + iy, &mut line, &mut around);
+            shares.part(iy * nx..(iy + 1) * nx).blend(&around, row);
+        }
+    }
+
+    /// [`Level::fill`] for all rows of the finer grid.
+    fn fill_all(&self, nx: usize, shares: Shares<'_>, values: &mut [f32]) {
+        let n_rows = TASK.div_ceil(nx);
+        parallel::for_each(values.chunks_mut(nx * n_rows).enumerate(), |(i, rows)| {
+            let first = i * n_rows;
+            self.fill(first, nx, shares.part(first * nx..first * nx + rows.len()), rows);
+        });
+    }
+
+    /// Collects the rest of the values for u of a finer grid of rows of `nx` values.
+    fn collect(&mut self, nx: usize, shares: Shares<'_>, finer: &[f32]) {
+        let (n, height) = (finer.len() / nx, self.values.len() / self.nx);
+        for_each_row(&mut self.values, self.nx, |iy, row| {
+            let add = |weight: f32, y: usize, line: &mut [f32]| {
+                let here = y * nx..(y + 1) * nx;
+                shares.part(here.clone()).add_rest(weight, &finer[here], line);
+            };
+            collect([nx, n], [iy, height], add, row);
+        });
+    }
+
+    /// Changes the values for u of a finer grid to those for its own values.
+    fn hand_down(&self, nx: usize, shares: Shares<'_>, finer: &mut [f32]) {
+        for_each_row(finer, nx, |iy, row| {
+            let squares = &self.values[iy / 2 * self.nx..][..self.nx];
+            let over: Vec<f32> = squares.iter().flat_map(|&square| [square; 2]).collect();
+            shares.part(iy * nx..(iy + 1) * nx).hand_down(&over, row);
+        });
+    }
 }
 
-/// Sets the shares of squares, of whose elements these `parts` are active.
-pub(crate) fn set_shares(own: &mut [f32], rest: &mut [f32], parts: &[f32]) {
-    let blocks = own.chunks_mut(TASK).zip(rest.chunks_mut(TASK)).zip(parts.chunks(TASK));
-    parallel::for_each(blocks, |((own, rest), parts)| {
-        for ((own, rest), &part) in own.iter_mut().zip(rest).zip(parts) {
-            [*own, *rest] = shares(part);
+/// F and its transpose on a grid, whose values and [`Shares`] the caller has.
+pub(crate) struct Extension {
+    nx: usize,
+    /// Grids of squares, finest first. The last is a single square.
+    levels: Vec<Level>,
+}
+
+impl Extension {
+    /// The extension on a grid with these numbers of values along both axes.
+    pub(crate) fn new([nx, ny]: [usize; 2]) -> Self {
+        let (mut levels, mut sides) = (Vec::new(), [nx, ny]);
+        while levels.is_empty() || sides != [1, 1] {
+            sides = sides.map(|n| n.div_ceil(2));
+            let n = sides[0] * sides[1];
+            levels.push(Level { nx: sides[0], parts: Parts::new(n), values: parallel::zeros(n) });
+        }
+        Self { nx, levels }
+    }
+
+    /// Prepares the extension for the parts of `active` elements.
+    pub(crate) fn set_active<T: Copy + Sync>(&mut self, active: &[T], part: impl Fn(T) -> f32 + Sync) {
+        self.take_means(active, part);
+        for level in &mut self.levels {
+            level.parts.set(&level.values);
+        }
+        if let Some(Level { parts, values, .. }) = self.levels.last_mut() {
+            // There is nothing around a single square.
+            parts.own[0] = if values[0] > 0.0 { values[0].recip() } else { 0.0 };
+        }
+    }
+
+    /// Prepares [`Extension::fill`] for means over all elements. Elements that are not active count as zero.
+    pub(crate) fn extend(&mut self, values: &[f32]) {
+        self.take_means(values, |value| value);
+        for k in (0..self.levels.len()).rev() {
+            let (finer, coarser) = self.levels.split_at_mut(k + 1);
+            let Level { nx, parts, values } = &mut finer[k];
+            match coarser.first() {
+                Some(coarser) => coarser.fill_all(*nx, parts.shares(), values),
+                None => values[0] *= parts.own[0],
+            }
+        }
+    }
+
+    /// F in whole rows of the grid, from row `first` on: from means to u.
+    pub(crate) fn fill(&self, first: usize, shares: Shares<'_>, rows: &mut [f32]) {
+        self.levels[0].fill(first, self.nx, shares, rows);
+    }
+
+    /// F in all rows of the grid.
+    pub(crate) fn fill_all(&self, shares: Shares<'_>, values: &mut [f32]) {
+        self.levels[0].fill_all(self.nx, shares, values);
+    }
+
+    /// Fᵀ: from values of u to the values that each active element gets.
+    pub(crate) fn gather(&mut self, shares: Shares<'_>, values: &mut [f32]) {
+        self.levels[0].collect(self.nx, shares, values);
+        for k in 1..self.levels.len() {
+            let (finer, coarser) = self.levels.split_at_mut(k);
+            let Level { nx, parts, values } = &finer[k - 1];
+            coarser[0].collect(*nx, parts.shares(), values);
+        }
+        for k in (0..self.levels.len()).rev() {
+            let (finer, coarser) = self.levels.split_at_mut(k + 1);
+            let Level { nx, parts, values } = &mut finer[k];
+            match coarser.first() {
+                Some(coarser) => coarser.hand_down(*nx, parts.shares(), values),
+                None => values[0] *= parts.own[0],
+            }
+        }
+        self.levels[0].hand_down(self.nx, shares, values);
+    }
+
+    /// Computes the means on all grids of squares.
+    fn take_means<T: Copy + Sync>(&mut self, values: &[T], part: impl Fn(T) -> f32 + Sync) {
+        self.levels[0].take_means(self.nx, values, part);
+        for k in 1..self.levels.len() {
+            let (finer, coarser) = self.levels.split_at_mut(k);
+            coarser[0].take_means(finer[k - 1].nx, &finer[k - 1].values, |mean| mean);
+        }
+    }
+}
+
+/// Calls `work` with the index of each row of `nx` values, and the row.
+fn for_each_row(values: &mut [f32], nx: usize, work: impl Fn(usize, &mut [f32]) + Sync) {
+    let n_rows = TASK.div_ceil(nx);
+    parallel::for_each(values.chunks_mut(nx * n_rows).enumerate(), |(i, rows)| {
+        for (iy, row) in rows.chunks_mut(nx).enumerate() {
+            work(i * n_rows + iy, row);
         }
     });
 }
 
-/// A grid of squares.
-struct Level {
-    nx: usize,
-    /// Factor on the mean over all elements of a square, active or not.
-    own: Vec<f32>,
-    /// Factor on the value that larger squares have at the place of the square.
-    rest: Vec<f32>,
-    values: Vec<f32>,
-}
+#[cfg(test)]
+mod tests {
+    use rc_core::Grid;
+    use rc_core::testing::quasi_random;
 
-/// F and its transpose between a grid of squares and all coarser ones.
-pub(crate) struct Pyramid {
-    /// Grids, finest first. The last is a single square.
-    levels: Vec<Level>,
-}
+    use super::*;
 
-impl Pyramid {
-    /// A pyramid over a grid of `nx` × `ny` squares.
-    pub(crate) fn new(nx: usize, ny: usize) -> Self {
-        let (mut levels, mut sides) = (Vec::new(), [nx, ny]);
-        loop {
-            let [nx, ny] = sides;
-            let zeros = || parallel::zeros(nx * ny);
-            levels.push(Level { nx, own: zeros(), rest: zeros(), values: zeros() });
-            if nx * ny <= 1 {
-                return Self { levels };
+    /// F of `values` on the active elements.
+    fn extended(extension: &mut Extension, active: &[bool], values: &[f32]) -> Vec<f32> {
+        let mut values = values.to_vec();
+        extension.extend(&values);
+        extension.fill(0, Shares::Active(active), &mut values);
+        values
+    }
+
+    fn product(a: &[f32], b: &[f32]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum()
+    }
+
+    #[test]
+    fn it_keeps_constants_and_has_its_transpose_on_any_grid() {
+        for (nx, ny) in [(64, 64), (61, 7), (1, 64), (33, 90), (2, 2), (1, 1)] {
+            let grid = Grid::new(nx, ny).expect("a grid");
+            for threshold in [0.0, 0.3, 0.9] {
+                let active: Vec<bool> = (0..grid.len()).map(|i| i == 0 || quasi_random(i) > threshold).collect();
+                let mut extension = Extension::new([nx, ny]);
+                extension.set_active(&active, |active| f32::from(u8::from(active)));
+                let of_active = |value: &dyn Fn(usize) -> f64| -> Vec<f32> {
+                    (0..grid.len()).map(|i| if active[i] { value(i) as f32 } else { 0.0 }).collect()
+                };
+                let ones = extended(&mut extension, &active, &of_active(&|_| 1.0));
+                assert!(ones.iter().all(|u| (u - 1.0).abs() < 1e-5), "{grid}, {threshold}: {ones:?}");
+                let r = of_active(&|i| quasi_random(3 * i + 1) - 0.5);
+                let y: Vec<f32> = (0..grid.len()).map(|i| quasi_random(5 * i + 2) as f32 - 0.5).collect();
+                let u = extended(&mut extension, &active, &r);
+                assert!(
+                    u.iter().zip(&r).zip(&active).all(|((u, r), &active)| !active || u.to_bits() == r.to_bits()),
+                    "{grid}"
+                );
+                let mut gathered = y.clone();
+                extension.gather(Shares::Active(&active), &mut gathered);
+                let (there, back) = (product(&u, &y), product(&r, &gathered));
+                let size = product(&u, &u).sqrt() * product(&y, &y).sqrt();
+                assert!((there - back).abs() < 1e-5 * size, "{grid}, {threshold}: {there} and {back}");
             }
-            sides = sides.map(|n| n.div_ceil(2));
         }
     }
-
-    /// The values on the grid, row by row.
-    pub(crate) fn values(&self) -> &[f32] {
-        &self.levels[0].values
-    }
-
-    /// The values on the grid, which are set before the other functions are called.
-    pub(crate) fn values_mut(&mut self) -> &mut [f32] {
-        &mut self.levels[0].values
-    }
-
-    /// Takes the values as the parts of squares that are active.
-    pub(crate) fn set_active(&mut self) {
-        self.take_means();
-        for level in &mut self.levels {
-            set_shares(&mut level.own, &mut level.rest, &level.values);
-        }
-        if let Some(Level { own, rest, values, .. }) = self.levels.last_mut() {
-            (own[0], rest[0]) = (if values[0] > 0.0 { values[0].recip() } else { 0.0 }, 0.0);
-        }
-    }
-
-    /// F: from means over squares to u.
-    ///
-    /// The means are over all elements of a square. Elements that are not active count as zero.
-    pub(crate) fn extend(&mut self) {
-        self.take_means();
-        for k in (0..self.levels.len()).rev() {
-            let (finer, coarser) = self.levels.split_at_mut(k + 1);
-            let (Level { nx, own, rest, values }, coarser) = (&mut finer[k], coarser.first());
-            let (nx, n_rows) = (*nx, rows_per_task(*nx));
-            let shares = own.chunks(nx * n_rows).zip(rest.chunks(nx * n_rows));
-            parallel::for_each(values.chunks_mut(nx * n_rows).zip(shares).enumerate(), |(i, (rows, (own, rest)))| {
-                let (mut line, mut around) = (Vec::new(), vec![0.0; nx]);
-                let shares = own.chunks(nx).zip(rest.chunks(nx));
-                for (iy, (row, (own, rest))) in rows.chunks_mut(nx).zip(shares).enumerate() {
-                    if let Some(coarser) = coarser {
-                        interpolate(&coarser.values, coarser.nx, i * n_rows + iy, &mut line, &mut around);
-                    }
-                    for ((value, around), (own, rest)) in row.iter_mut().zip(&around).zip(own.iter().zip(rest)) {
-                        *value = own * *value + rest * around;
-                    }
-                }
-            });
-        }
-    }
-
-    /// Fᵀ, times the number of elements in a square.
-    ///
-    /// It takes values of u, and gives the values that each active element of a square gets.
-    pub(crate) fn gather(&mut self) {
-        for k in 1..self.levels.len() {
-            let (finer, coarser) = self.levels.split_at_mut(k);
-            let (finer, Level { nx, values, .. }) = (&finer[k - 1], &mut coarser[0]);
-            let (nx, n_rows, height) = (*nx, rows_per_task(*nx), values.len() / *nx);
-            let n_finer = finer.values.len() / finer.nx;
-            parallel::for_each(values.chunks_mut(nx * n_rows).enumerate(), |(i, rows)| {
-                let mut line = Vec::new();
-                for (iy, row) in rows.chunks_mut(nx).enumerate() {
-                    let add = |weight: f32, y: usize, line: &mut [f32]| {
-                        let here = y * finer.nx..(y + 1) * finer.nx;
-                        let parts = finer.values[here.clone()].iter().zip(&finer.rest[here]);
-                        for (sum, (value, rest)) in line.iter_mut().zip(parts) {
-                            *sum += weight * rest * value;
-                        }
-                    };
-                    gather([finer.nx, n_finer], [i * n_rows + iy, height], &mut line, add, row);
-                }
-            });
-        }
-        for k in (0..self.levels.len()).rev() {
-            let (finer, coarser) = self.levels.split_at_mut(k + 1);
-            let (Level { nx, own, values, .. }, coarser) = (&mut finer[k], coarser.first());
-            let (nx, n_rows) = (*nx, rows_per_task(*nx));
-            let blocks = values.chunks_mut(nx * n_rows).zip(own.chunks(nx * n_rows)).enumerate();
-            parallel::for_each(blocks, |(i, (rows, own))| {
-                for (iy, (row, own)) in rows.chunks_mut(nx).zip(own.chunks(nx)).enumerate() {
-                    for (value, own) in row.iter_mut().zip(own) {
-                        *value *= own;
-                    }
-                    if let Some(coarser) = coarser {
-                        let above = (i * n_rows + iy) >> 1;
-                        add_squares(&coarser.values[above * coarser.nx..], row);
-                    }
-                }
-            });
-        }
-    }
-
-    /// Computes the means on all coarser grids.
-    fn take_means(&mut self) {
-        for k in 1..self.levels.len() {
-            let (finer, coarser) = self.levels.split_at_mut(k);
-            let (finer, Level { nx, values, .. }) = (&finer[k - 1], &mut coarser[0]);
-            let n_rows = rows_per_task(*nx);
-            parallel::for_each(values.chunks_mut(*nx * n_rows).enumerate(), |(i, rows)| {
-                for (iy, row) in rows.chunks_mut(*nx).enumerate() {
-                    let first = 2 * (i * n_rows + iy);
-                    let part = |y: usize| finer.values.get(y * finer.nx..(y + 1) * finer.nx);
-                    means([part(first), part(first + 1)], row);
-                }
-            });
-        }
-    }
-}
-
-/// Adds the values of a row of squares to the values of their parts.
-pub(crate) fn add_squares(squares: &[f32], parts: &mut [f32]) {
-    for (parts, square) in parts.chunks_mut(2).zip(squares) {
-        for part in parts {
-            *part += square;
-        }
-    }
-}
-
-/// Rows of `nx` values that one task works on.
-pub(crate) fn rows_per_task(nx: usize) -> usize {
-    TASK.div_ceil(nx)
 }

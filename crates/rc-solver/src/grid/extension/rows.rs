@@ -1,18 +1,136 @@
-//! Rows of squares and of their parts: means, interpolation, and the transpose of each.
+//! Rows of squares and of their parts: shares, means, interpolation, and the transpose of each.
 //!
 //! A square has two parts along each axis. Where the number of parts is odd, the last square has one part. The missing
 //! part counts as empty.
 
+use std::ops::Range;
+
+use crate::parallel;
+
+/// Minimum number of values that one task works on.
+pub(super) const TASK: usize = 4096;
+
+/// Factors of squares that are active in part.
+pub(crate) struct Parts {
+    /// Factor on the mean over all elements of a square, active or not.
+    pub(super) own: Vec<f32>,
+    /// Factor on the value that larger squares have at the place of the square.
+    pub(crate) rest: Vec<f32>,
+}
+
+impl Parts {
+    pub(crate) fn new(n: usize) -> Self {
+        Self { own: parallel::zeros(n), rest: parallel::zeros(n) }
+    }
+
+    /// Sets the factors of squares, of whose elements these `parts` are active.
+    pub(crate) fn set(&mut self, parts: &[f32]) {
+        let blocks = self.own.chunks_mut(TASK).zip(self.rest.chunks_mut(TASK)).zip(parts.chunks(TASK));
+        parallel::for_each(blocks, |((own, rest), parts)| {
+            for ((own, rest), &x) in own.iter_mut().zip(rest).zip(parts) {
+                // `docs/measurements-uniform.md` compares x^(3/4) with other powers.
+                let part = x.sqrt() * x.sqrt().sqrt();
+                // The mean over all elements is x times the mean over the active ones.
+                [*own, *rest] = if x > 0.0 { [part / x, 1.0 - part] } else { [0.0, 1.0] };
+            }
+        });
+    }
+
+    pub(crate) fn shares(&self) -> Shares<'_> {
+        Shares::Parts { own: &self.own, rest: &self.rest }
+    }
+}
+
+/// The shares of u that are own values, and values around.
+#[derive(Clone, Copy)]
+pub(crate) enum Shares<'a> {
+    /// Elements, of which active ones have their own value, and the others the value around.
+    Active(&'a [bool]),
+    /// Squares with a factor on the mean over all elements, and a factor on the value around.
+    Parts { own: &'a [f32], rest: &'a [f32] },
+}
+
+impl Shares<'_> {
+    /// The shares of a range of values.
+    pub(crate) fn part(&self, range: Range<usize>) -> Shares<'_> {
+        match self {
+            Self::Active(active) => Shares::Active(&active[range]),
+            Self::Parts { own, rest } => Shares::Parts { own: &own[range.clone()], rest: &rest[range] },
+        }
+    }
+
+    /// Changes own values to u.
+    pub(crate) fn blend(self, around: &[f32], values: &mut [f32]) {
+        let values = values.iter_mut().zip(around);
+        match self {
+            Self::Active(active) => {
+                for ((value, &around), &active) in values.zip(active) {
+                    *value = if active { *value } else { around };
+                }
+            }
+            Self::Parts { own, rest } => {
+                for ((value, around), (own, rest)) in values.zip(own.iter().zip(rest)) {
+                    *value = own * *value + rest * around;
+                }
+            }
+        }
+    }
+
+    /// Adds a multiple of the values around to a line, from a row of values for u.
+    pub(super) fn add_rest(self, weight: f32, row: &[f32], line: &mut [f32]) {
+        let values = line.iter_mut().zip(row);
+        match self {
+            Self::Active(active) => {
+                for ((sum, value), &active) in values.zip(active) {
+                    *sum += if active { 0.0 } else { weight * value };
+                }
+            }
+            Self::Parts { rest, .. } => {
+                for ((sum, value), rest) in values.zip(rest) {
+                    *sum += weight * rest * value;
+                }
+            }
+        }
+    }
+
+    /// Changes values for u to values for own values, with the values `over` them from coarser squares.
+    pub(crate) fn hand_down(self, over: &[f32], values: &mut [f32]) {
+        let values = values.iter_mut().zip(over);
+        match self {
+            Self::Active(active) => {
+                for ((value, over), &active) in values.zip(active) {
+                    *value = if active { *value + over } else { 0.0 };
+                }
+            }
+            Self::Parts { own, .. } => {
+                for ((value, over), own) in values.zip(own) {
+                    *value = own * *value + over;
+                }
+            }
+        }
+    }
+
+    /// Whether any u has a part of its own value.
+    pub(crate) fn any_own(self) -> bool {
+        match self {
+            Self::Active(active) => active.iter().any(|&active| active),
+            Self::Parts { .. } => true,
+        }
+    }
+}
+
 /// Means over squares from the two rows of their parts. The second row may be missing.
-pub(super) fn means(rows: [Option<&[f32]>; 2], means: &mut [f32]) {
+///
+/// `value` is applied to each part.
+pub(super) fn means<T: Copy>(rows: [Option<&[T]>; 2], value: impl Fn(T) -> f32, means: &mut [f32]) {
     means.fill(0.0);
     for row in rows.into_iter().flatten() {
         let (pairs, rest) = row.as_chunks::<2>();
-        for (mean, [a, b]) in means.iter_mut().zip(pairs) {
-            *mean += 0.25 * (a + b);
+        for (mean, &[a, b]) in means.iter_mut().zip(pairs) {
+            *mean += 0.25 * (value(a) + value(b));
         }
-        if let (Some(mean), [last]) = (means.last_mut(), rest) {
-            *mean += 0.25 * last;
+        if let (Some(mean), &[last]) = (means.last_mut(), rest) {
+            *mean += 0.25 * value(last);
         }
     }
 }
@@ -44,17 +162,15 @@ pub(super) fn interpolate(values: &[f32], width: usize, iy: usize, line: &mut Ve
 /// Row `iy` of `height` rows of squares, by a quarter of the transpose of [`interpolate`].
 ///
 /// `add_part(weight, y, line)` adds a multiple of row `y` of the `n` rows of parts to a line of `width` values.
-pub(super) fn gather(
+pub(super) fn collect(
     [width, n]: [usize; 2],
     [iy, height]: [usize; 2],
-    line: &mut Vec<f32>,
     add_part: impl Fn(f32, usize, &mut [f32]),
     squares: &mut [f32],
 ) {
     // Two squares' parts before and after. Missing parts are zero.
     let padded = 2 * squares.len() + 2;
-    line.clear();
-    line.resize(padded, 0.0);
+    let mut line = vec![0.0; padded];
     let [before, after] = [(iy + height - 1) % height, (iy + 1) % height];
     for (y, weight) in [(2 * before + 1, 0.25), (2 * iy, 0.75), (2 * iy + 1, 0.75), (2 * after, 0.25)] {
         if y < n {

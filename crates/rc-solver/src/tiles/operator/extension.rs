@@ -10,13 +10,15 @@
 //! With the extension and one grid, residuals fall by ten in an iteration. With two or three levels as here, they do so
 //! in one and a half iterations.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use pulp::{Arch, Simd, WithSimd};
 use rc_fft::Convolution;
-use rc_quadtree::{BLOCK_CELLS, CELLS, TILE};
+use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE};
 
-use crate::grid::extension::pyramid::{Pyramid, set_shares};
+use crate::grid::extension::pyramid::Extension;
+use crate::grid::extension::rows::{Parts, Shares};
 use crate::grid::passes::{read_rows, write_rows};
 use crate::parallel;
 use crate::parallel::Tasks;
@@ -32,12 +34,10 @@ use crate::tiles::part::Part;
 /// Side of the patch around a tile.
 const AROUND: usize = 3 * TILE;
 
-/// Values on a level between the base grid and the finest.
+/// Values on the base grid or a level between it and the finest.
 struct Level {
-    /// Factor on the mean over the finest elements of a cell, active or not.
-    own: Vec<f32>,
-    /// Factor on P u in u. The factor in w is smaller by one.
-    rest: Vec<f32>,
+    /// Factors on means over the finest elements of cells, and on P u. Those of the base grid are in rows.
+    parts: Parts,
     /// Means and u on the way up. On the way down, the values for u.
     values: Vec<f32>,
     /// Values w. On the way down, the values for the coarser level.
@@ -49,33 +49,35 @@ struct Level {
 /// Values of the extension on one hierarchy.
 pub(super) struct TileExtension {
     hierarchy: Arc<Hierarchy>,
-    /// Levels 1 to K - 1.
+    /// Levels 0 to K - 1.
     levels: Vec<Level>,
-    /// The base grid, as rows and as tiles.
-    pyramid: Pyramid,
-    base: Vec<f32>,
+    /// The values of the base grid in rows.
+    rows: Vec<f32>,
+    /// F between the base grid and coarser grids.
+    coarser: Extension,
 }
 
 impl TileExtension {
     pub(super) fn new(hierarchy: Arc<Hierarchy>) -> Self {
-        let [nx, ny] = hierarchy.base().period();
+        let sides = hierarchy.base().period();
         let level = |part: &Part| {
-            let zeros = || vec![0.0; part.n_cells()];
-            Level { own: zeros(), rest: zeros(), values: zeros(), detail: zeros(), pressure: zeros() }
+            let n = part.n_cells();
+            let zeros = || vec![0.0; n];
+            Level { parts: Parts::new(n), values: zeros(), detail: zeros(), pressure: zeros() }
         };
-        let levels = hierarchy.levels[1..hierarchy.n_levels()].iter().map(level).collect();
-        Self { levels, pyramid: Pyramid::new(nx, ny), base: vec![0.0; nx * ny], hierarchy }
+        let levels = hierarchy.levels[..hierarchy.n_levels()].iter().map(level).collect();
+        Self { levels, rows: vec![0.0; sides[0] * sides[1]], coarser: Extension::new(sides), hierarchy }
     }
 
     /// Prepares the extension for these active elements.
     ///
     /// `finest` is as for [`TileExtension::precondition`].
     pub(super) fn set_active(&mut self, active: &[bool], finest: &mut [f32]) {
-        self.take_means(&|cell| if active[cell] { 1.0 } else { 0.0 }, finest);
-        for level in &mut self.levels {
-            set_shares(&mut level.own, &mut level.rest, &level.values);
+        self.take_means(|cell| f32::from(u8::from(active[cell])), finest);
+        for (level, Level { parts, values, .. }) in self.levels.iter_mut().enumerate() {
+            parts.set(if level == 0 { &self.rows } else { values });
         }
-        self.pyramid.set_active();
+        self.coarser.set_active(&self.rows, |part| part);
     }
 
     /// Computes z = Fᵀ |q|/2 F r.
@@ -99,116 +101,79 @@ impl TileExtension {
 
     /// Computes means over the cells of all levels, from the values of own elements.
     ///
-    /// The pyramid takes the means of the base grid.
-    fn take_means(&mut self, of_element: &(dyn Fn(usize) -> f32 + Sync), finest: &mut [f32]) {
-        if self.hierarchy.base_part.is_none() {
-            return self.take_means_of(of_element);
-        }
-        let own = self.hierarchy.own_values();
-        parallel::for_each(finest[own].chunks_mut(BLOCK_CELLS).enumerate(), |(i, cells)| {
-            for (cell, value) in cells.iter_mut().enumerate() {
-                *value = of_element(i * BLOCK_CELLS + cell);
-            }
+    /// `finest` gets these, and the values of other ranks that this rank reads.
+    fn take_means(&mut self, of_element: impl Fn(usize) -> f32 + Sync, finest: &mut [f32]) {
+        let hierarchy = &self.hierarchy;
+        let own = finest[hierarchy.own_values()].chunks_mut(BLOCK_CELLS).enumerate();
+        parallel::for_each(own, |(i, cells)| {
+            cells.iter_mut().enumerate().for_each(|(cell, value)| *value = of_element(i * BLOCK_CELLS + cell));
         });
-        self.hierarchy.finest().exchange(finest);
-        let finest = &*finest;
-        self.take_means_of(&|cell| finest[cell]);
-    }
-
-    /// Computes means over the cells of all levels, from the values of elements.
-    ///
-    /// Values of other ranks that this rank reads are included.
-    fn take_means_of(&mut self, of_element: &(dyn Fn(usize) -> f32 + Sync)) {
-        let hierarchy = Arc::clone(&self.hierarchy);
-        for level in (1..hierarchy.n_levels()).rev() {
-            let (coarser, finer) = self.levels.split_at_mut(level);
-            let values = &mut coarser[level - 1].values;
-            let means = Means::new(&hierarchy, level, finer.first().map(|finer| &*finer.values), of_element);
-            let part = &hierarchy.levels[level];
-            parallel::for_each(own_blocks(part, values), |(places, cells)| means.set(places, cells));
-            part.exchange(values);
+        hierarchy.finest().exchange(finest);
+        for level in (0..hierarchy.n_levels()).rev() {
+            let (here, finer) = self.levels.split_at_mut(level + 1);
+            let values = &mut here[level].values;
+            let means = Means::new(hierarchy, level, finer.first().map_or(&*finest, |finer| &finer.values), finest);
+            if level == 0 {
+                set_base(hierarchy, values, |places, cells| means.set(places, cells));
+            } else {
+                let part = &hierarchy.levels[level];
+                parallel::for_each(own_blocks(part, values), |(places, cells)| means.set(places, cells));
+                part.exchange(values);
+            }
         }
-        let means = Means::new(&hierarchy, 0, self.levels.first().map(|finer| &*finer.values), of_element);
-        set_base(&hierarchy, &mut self.base, |places, cells| means.set(places, cells));
-        let side = self.hierarchy.base().period()[0];
-        let rows = self.pyramid.values_mut().chunks_mut(TILE * side).zip(self.base.chunks(TILE * side));
-        parallel::for_each(rows, |(rows, cells)| tiles_to_rows(cells, rows, side));
+        self.for_base_rows(|rows, cells, side| tiles_to_rows(cells, rows, side));
     }
 
     /// Computes u and w on all levels. `finest` gets w.
-    fn extend(&mut self, active: &[bool], values: &[f32], finest: &mut [f32]) {
-        self.take_means(&|cell| values[cell], finest);
-        self.pyramid.extend();
-        self.base_to_tiles();
+    fn extend(&mut self, active: &[bool], values: &mut [f32], finest: &mut [f32]) {
+        self.take_means(|cell| values[cell], finest);
+        self.coarser.extend(&self.rows);
+        self.coarser.fill_all(self.levels[0].parts.shares(), &mut self.rows);
+        self.for_base_rows(|rows, cells, side| rows_to_tiles(rows, cells, side));
         let tiles = &self.hierarchy.levels;
-        for level in 0..self.levels.len() {
+        for level in 1..tiles.len() {
             let (coarser, here) = self.levels.split_at_mut(level);
-            let coarser = coarser.last().map_or(&self.base, |coarser| &coarser.values);
-            let coarser = TileValues::new(coarser, tiles[level].tiles());
-            let part = &tiles[level + 1];
-            let Level { own, rest, values, detail, .. } = &mut here[0];
-            let own_cells = part.own_cells();
-            let shares = own[own_cells.clone()].chunks(BLOCK_CELLS).zip(rest[own_cells.clone()].chunks(BLOCK_CELLS));
-            let blocks = own_blocks(part, values).zip(detail[own_cells].chunks_mut(BLOCK_CELLS)).zip(shares);
-            parallel::for_each(blocks, |(((places, values), detail), (own, rest))| {
-                let mut around = [0.0; CELLS];
-                for (tile, &place) in places.iter().enumerate() {
-                    interpolate(coarser, place, &mut around);
-                    for (cell, around) in (tile * CELLS..).zip(around) {
-                        let mean = own[cell] * values[cell];
-                        values[cell] = mean + rest[cell] * around;
-                        detail[cell] = values[cell] - around;
-                    }
-                }
-            });
+            let coarser = TileValues::new(&coarser[level - 1].values, tiles[level - 1].tiles());
+            let (part, own_cells) = (&tiles[level], tiles[level].own_cells());
+            let Some(Level { parts, values, detail, .. }) = here.first_mut() else {
+                blend(part.own_places(), coarser, Shares::Active(active), (values, &mut finest[own_cells]));
+                part.exchange(finest);
+                continue;
+            };
+            let shares = parts.shares();
+            blend(
+                part.own_places(),
+                coarser,
+                shares.part(own_cells.clone()),
+                (&mut values[own_cells.clone()], &mut detail[own_cells]),
+            );
             part.exchange(values);
             part.exchange(detail);
         }
-        let coarser = self.levels.last().map_or(&self.base, |coarser| &coarser.values);
-        let coarser = TileValues::new(coarser, tiles[self.levels.len()].tiles());
-        let elements = active.chunks(BLOCK_CELLS).zip(values.chunks(BLOCK_CELLS));
-        let part = self.hierarchy.finest();
-        parallel::for_each(own_blocks(part, finest).zip(elements), |((places, finest), (active, values))| {
-            let mut around = [0.0; CELLS];
-            for (tile, &place) in places.iter().enumerate() {
-                let here = tile * CELLS..(tile + 1) * CELLS;
-                if active[here.clone()].iter().any(|&active| active) {
-                    interpolate(coarser, place, &mut around);
-                }
-                for (cell, around) in here.zip(around) {
-                    finest[cell] = if active[cell] { values[cell] - around } else { 0.0 };
-                }
-            }
-        });
-        part.exchange(finest);
     }
 
     /// Applies the stencils to w. `values` gets the result on the finest elements.
     fn apply_stencils(&mut self, arch: Arch, tables: &Tables<f32>, finest: &[f32], values: &mut [f32]) {
-        let tiles = &self.hierarchy.levels;
-        for (level, here) in self.levels.iter_mut().enumerate() {
-            let taps = &tables.levels[level].0;
-            let part = &tiles[level + 1];
-            let around = TileValues::new(&here.detail, part.tiles());
-            parallel::for_each(own_blocks(part, &mut here.pressure), |(places, cells)| {
+        for (level, part) in self.hierarchy.levels.iter().enumerate().skip(1) {
+            let taps = &tables.levels[level - 1].0;
+            let (detail, cells) = match self.levels.get_mut(level) {
+                Some(here) => (&*here.detail, &mut here.pressure[part.own_cells()]),
+                None => (finest, &mut *values),
+            };
+            let around = TileValues::new(detail, part.tiles());
+            parallel::for_each(blocks(part.own_places(), cells), |(places, cells)| {
                 arch.dispatch(StencilPass { taps, around, places, cells });
             });
         }
-        let taps = &tables.levels[self.levels.len()].0;
-        let part = self.hierarchy.finest();
-        let around = TileValues::new(finest, part.tiles());
-        parallel::for_each(blocks(part.own_places(), values), |(places, cells)| {
-            arch.dispatch(StencilPass { taps, around, places, cells });
-        });
     }
 
     /// Applies |q|/2 to u on the base grid.
     fn convolve_base(&mut self, convolution: &mut Convolution<f32>, tables: &Tables<f32>) {
         let len = rc_fft::BLOCK_ROWS * self.hierarchy.base().period()[0];
-        let values = self.pyramid.values();
+        let values = &self.rows;
         write_rows(convolution, &|i, rows| rows.copy_from_slice(&values[i * len..][..rows.len()]));
         convolution.apply_symbol(&tables.base);
-        let tasks = Tasks::new(self.pyramid.values_mut().chunks_mut(len));
+        let tasks = Tasks::new(self.rows.chunks_mut(len));
         read_rows(convolution, &|i, rows| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(rows)));
     }
 
@@ -216,7 +181,7 @@ impl TileExtension {
     ///
     /// `values` has the stencils of the finest elements, and gets z.
     fn gather(&mut self, active: &[bool], values: &mut [f32], finest: &mut [f32]) {
-        let hierarchy = Arc::clone(&self.hierarchy);
+        let hierarchy = &self.hierarchy;
         let elements = active.chunks(BLOCK_CELLS).zip(values.chunks(BLOCK_CELLS));
         let given = finest[hierarchy.own_values()].chunks_mut(BLOCK_CELLS);
         parallel::for_each(given.zip(elements), |(given, (active, pressure))| {
@@ -225,93 +190,110 @@ impl TileExtension {
             }
         });
         hierarchy.finest().exchange(finest);
-        let tiles = &hierarchy.levels;
         for level in (0..self.levels.len()).rev() {
             let (here, finer) = self.levels.split_at_mut(level + 1);
             let finer = finer.first().map_or(&*finest, |finer| &finer.detail);
-            let finer = TileValues::new(finer, tiles[level + 2].tiles());
-            let part = &tiles[level + 1];
-            let Level { rest, values, detail, pressure, .. } = &mut here[level];
-            let own = part.own_cells();
-            let others = rest[own.clone()].chunks(BLOCK_CELLS).zip(pressure[own.clone()].chunks(BLOCK_CELLS));
+            let finer = TileValues::new(finer, hierarchy.levels[level + 1].tiles());
+            let Level { parts, values, detail, pressure } = &mut here[level];
+            if level == 0 {
+                set_base(hierarchy, values, |places, cells| collect(finer, places, cells));
+                continue;
+            }
+            let (part, own) = (&hierarchy.levels[level], hierarchy.levels[level].own_cells());
+            let others = parts.rest[own.clone()].chunks(BLOCK_CELLS).zip(pressure[own.clone()].chunks(BLOCK_CELLS));
             let blocks = own_blocks(part, values).zip(detail[own].chunks_mut(BLOCK_CELLS)).zip(others);
             parallel::for_each(blocks, |(((places, values), given), (rest, pressure))| {
                 collect(finer, places, values);
-                for (cell, given) in given.iter_mut().enumerate() {
-                    *given = rest[cell] * (values[cell] + pressure[cell]) - pressure[cell];
+                for ((value, given), (rest, pressure)) in values.iter_mut().zip(given).zip(rest.iter().zip(pressure)) {
+                    *value += pressure;
+                    *given = rest * *value - pressure;
                 }
             });
             part.exchange(detail);
         }
-        let finer = self.levels.first().map_or(&*finest, |finer| &finer.detail);
-        let finer = TileValues::new(finer, tiles[1].tiles());
-        set_base(&hierarchy, &mut self.base, |places, cells| collect(finer, places, cells));
-        let side = hierarchy.base().period()[0];
-        let rows = self.pyramid.values_mut().chunks_mut(TILE * side).zip(self.base.chunks(TILE * side));
-        parallel::for_each(rows, |(rows, cells)| {
+        self.for_base_rows(|rows, cells, side| {
             let mut collected = vec![0.0; rows.len()];
             tiles_to_rows(cells, &mut collected, side);
-            for (value, collected) in rows.iter_mut().zip(collected) {
-                *value += collected;
-            }
+            rows.iter_mut().zip(collected).for_each(|(value, collected)| *value += collected);
         });
-        self.pyramid.gather();
-        self.base_to_tiles();
+        self.coarser.gather(self.levels[0].parts.shares(), &mut self.rows);
+        self.for_base_rows(|rows, cells, side| rows_to_tiles(rows, cells, side));
         self.hand_down(active, values);
     }
 
     /// Computes z from the values that active elements of base grid cells get.
     fn hand_down(&mut self, active: &[bool], values: &mut [f32]) {
         let tiles = &self.hierarchy.levels;
-        for level in 0..self.levels.len() {
+        for level in 1..tiles.len() {
             let (coarser, here) = self.levels.split_at_mut(level);
-            let coarser = coarser.last().map_or(&self.base, |coarser| &coarser.values);
-            let coarser = TileValues::new(coarser, tiles[level].tiles());
-            let part = &tiles[level + 1];
-            let Level { own, values, pressure, .. } = &mut here[0];
+            let coarser = TileValues::new(&coarser[level - 1].values, tiles[level - 1].tiles());
+            let part = &tiles[level];
+            let Some(Level { parts, values, .. }) = here.first_mut() else {
+                add_cells_over(part.own_places(), coarser, Shares::Active(active), values);
+                continue;
+            };
             let own_cells = part.own_cells();
-            let others = own[own_cells.clone()].chunks(BLOCK_CELLS).zip(pressure[own_cells].chunks(BLOCK_CELLS));
-            parallel::for_each(own_blocks(part, values).zip(others), |((places, values), (own, pressure))| {
-                for (tile, &place) in places.iter().enumerate() {
-                    let over = cells_over(coarser, place);
-                    for (cell, over) in (tile * CELLS..).zip(over) {
-                        values[cell] = own[cell] * (values[cell] + pressure[cell]) + over;
-                    }
-                }
-            });
+            add_cells_over(part.own_places(), coarser, parts.shares().part(own_cells.clone()), &mut values[own_cells]);
             part.exchange(values);
         }
-        let coarser = self.levels.last().map_or(&self.base, |coarser| &coarser.values);
-        let coarser = TileValues::new(coarser, tiles[self.levels.len()].tiles());
-        let elements = blocks(self.hierarchy.finest().own_places(), values).zip(active.chunks(BLOCK_CELLS));
-        parallel::for_each(elements, |((places, values), active)| {
-            for (tile, &place) in places.iter().enumerate() {
-                let over = cells_over(coarser, place);
-                for (cell, over) in (tile * CELLS..).zip(over) {
-                    values[cell] = if active[cell] { values[cell] + over } else { 0.0 };
-                }
-            }
-        });
-        for (level, here) in self.levels.iter().enumerate() {
-            let Some((range, leaves)) = self.hierarchy.elements_of(level + 1) else { continue };
+        for (level, here) in self.levels.iter().enumerate().skip(1) {
+            let Some((range, leaves)) = self.hierarchy.elements_of(level) else { continue };
             let blocks = blocks(leaves.places(), &mut values[range.clone()]).zip(active[range].chunks(BLOCK_CELLS));
             parallel::for_each(blocks, |((places, values), active)| {
-                for (tile, place) in places.iter().enumerate() {
-                    let found = tiles[level + 1].tiles().find(place[0].into(), place[1].into());
-                    let first = found.expect("levels have the tiles of their elements") * CELLS;
-                    for (i, cell) in (tile * CELLS..(tile + 1) * CELLS).enumerate() {
-                        values[cell] = if active[cell] { here.values[first + i] } else { 0.0 };
-                    }
+                let cells = values.as_chunks_mut::<CELLS>().0.iter_mut().zip(active.chunks(CELLS));
+                for (&place, (cells, active)) in places.iter().zip(cells) {
+                    let found = TileValues::new(&here.values, tiles[level].tiles()).tile(place);
+                    let found = found.expect("levels have the tiles of their elements").iter().zip(active);
+                    cells.iter_mut().zip(found).for_each(|(to, (z, &active))| *to = if active { *z } else { 0.0 });
                 }
             });
         }
     }
 
-    fn base_to_tiles(&mut self) {
+    /// Calls `work` with rows of the base grid, the tiles in them, and the length of a row.
+    fn for_base_rows(&mut self, work: impl Fn(&mut [f32], &mut [f32], usize) + Sync) {
         let side = self.hierarchy.base().period()[0];
-        let rows = self.base.chunks_mut(TILE * side).zip(self.pyramid.values().chunks(TILE * side));
-        parallel::for_each(rows, |(cells, rows)| rows_to_tiles(rows, cells, side));
+        let rows = self.rows.chunks_mut(TILE * side).zip(self.levels[0].values.chunks_mut(TILE * side));
+        parallel::for_each(rows, |(rows, cells)| work(rows, cells, side));
     }
+}
+
+/// The values of a tile.
+fn cells_of(tile: usize) -> Range<usize> {
+    tile * CELLS..(tile + 1) * CELLS
+}
+
+/// Changes own values on tiles to u, and sets w = u - P u.
+fn blend(
+    places: &[[u32; 2]],
+    coarser: TileValues<'_, f32>,
+    shares: Shares<'_>,
+    (values, detail): (&mut [f32], &mut [f32]),
+) {
+    let blocks = blocks(places, values).zip(detail.chunks_mut(BLOCK_CELLS)).enumerate();
+    parallel::for_each(blocks, |(block, ((places, values), detail))| {
+        let mut around = [0.0; CELLS];
+        let cells = values.as_chunks_mut::<CELLS>().0.iter_mut().zip(detail.as_chunks_mut::<CELLS>().0);
+        for (i, (&place, (values, detail))) in places.iter().zip(cells).enumerate() {
+            let shares = shares.part(cells_of(block * BLOCK_TILES + i));
+            if shares.any_own() {
+                interpolate(coarser, place, &mut around);
+            }
+            shares.blend(&around, values);
+            for ((w, u), around) in detail.iter_mut().zip(values).zip(around) {
+                *w = *u - around;
+            }
+        }
+    });
+}
+
+/// Changes values for u on tiles to those for own values.
+fn add_cells_over(places: &[[u32; 2]], coarser: TileValues<'_, f32>, shares: Shares<'_>, values: &mut [f32]) {
+    parallel::for_each(blocks(places, values).enumerate(), |(block, (places, values))| {
+        for (i, (&place, values)) in places.iter().zip(values.as_chunks_mut::<CELLS>().0).enumerate() {
+            shares.part(cells_of(block * BLOCK_TILES + i)).hand_down(&cells_over(coarser, place), values);
+        }
+    });
 }
 
 /// The stencil of a level on some of its tiles.

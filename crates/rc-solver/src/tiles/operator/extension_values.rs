@@ -2,12 +2,11 @@
 //!
 //! A rank sets its own values, as means over finer levels.
 
-use std::ops::Range;
-
-use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TileSet, means_of_quarter, quarters};
+use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, means_of_quarter, quarters};
 
 use crate::parallel;
 use crate::tiles::operator::hierarchy::Hierarchy;
+use crate::tiles::operator::tile_values::TileValues;
 use crate::tiles::part::Part;
 
 /// The tiles, block by block. There may be more values than tiles.
@@ -41,43 +40,31 @@ pub(super) fn set_base(hierarchy: &Hierarchy, base: &mut [f32], set: impl Fn(&[[
 
 /// Means over the cells of a level.
 pub(super) struct Means<'a> {
-    /// Tiles of the next finer level. The values below are missing if it has the finest elements.
-    tiles: &'a TileSet,
-    finer: Option<&'a [f32]>,
-    /// Range of the elements of the level in a vector, and their tiles.
-    elements: Option<(Range<usize>, &'a TileSet)>,
-    of_element: &'a (dyn Fn(usize) -> f32 + Sync),
+    finer: TileValues<'a, f32>,
+    /// The elements of the level.
+    elements: Option<TileValues<'a, f32>>,
 }
 
 impl<'a> Means<'a> {
-    pub(super) fn new(
-        hierarchy: &'a Hierarchy,
-        level: usize,
-        finer: Option<&'a [f32]>,
-        of_element: &'a (dyn Fn(usize) -> f32 + Sync),
-    ) -> Self {
-        let tiles = hierarchy.levels[level + 1].tiles();
-        Self { tiles, finer, elements: hierarchy.elements_of(level), of_element }
+    /// Means over the values of the next `finer` level. Those of the level's own elements are among `elements`.
+    pub(super) fn new(hierarchy: &'a Hierarchy, level: usize, finer: &'a [f32], elements: &'a [f32]) -> Self {
+        let of_level = |(range, tiles)| TileValues::new(&elements[range], tiles);
+        let finer = TileValues::new(finer, hierarchy.levels[level + 1].tiles());
+        Self { finer, elements: hierarchy.elements_of(level).map(of_level) }
     }
 
     pub(super) fn set(&self, places: &[[u32; 2]], cells: &mut [f32]) {
-        let child = |tile: usize, cell: usize| match self.finer {
-            Some(finer) => finer[tile * CELLS + cell],
-            None => (self.of_element)(tile * CELLS + cell),
-        };
         for (&place, cells) in places.iter().zip(cells.as_chunks_mut::<CELLS>().0) {
             // Finer levels reach beyond their elements, over larger elements.
-            if let Some((range, leaves)) = &self.elements
-                && let Some(tile) = leaves.find(place[0].into(), place[1].into())
-            {
-                *cells = std::array::from_fn(|i| (self.of_element)(range.start + tile * CELLS + i));
+            if let Some(elements) = self.elements.and_then(|elements| elements.tile(place)) {
+                cells.copy_from_slice(elements);
                 continue;
             }
             *cells = [0.0; CELLS];
             for quarter in quarters(place) {
-                let Some(tile) = self.tiles.find(quarter[0].into(), quarter[1].into()) else { continue };
-                let fine: [f32; CELLS] = std::array::from_fn(|cell| child(tile, cell));
-                means_of_quarter(quarter, &fine, |cell, mean| cells[cell] = mean);
+                if let Some(fine) = self.finer.tile(quarter) {
+                    means_of_quarter(quarter, fine, |cell, mean| cells[cell] = mean);
+                }
             }
         }
     }

@@ -61,8 +61,6 @@ pub(super) fn collect(finer: TileValues<'_, f32>, places: &[[u32; 2]], cells: &m
 ///
 /// They are zero where there is no coarser cell.
 pub(super) fn cells_over(coarser: TileValues<'_, f32>, place: [u32; 2]) -> [f32; CELLS] {
-    let [column, row] = place.map(|i| i64::from(i / 2));
-    let Some(tile) = coarser.tiles.find(column, row) else { return [0.0; CELLS] };
-    let values = &coarser.values[tile * CELLS..][..CELLS];
+    let Some(values) = coarser.tile(place.map(|i| i / 2)) else { return [0.0; CELLS] };
     std::array::from_fn(|cell| values[cell_over(place, cell % TILE, cell / TILE)])
 }

@@ -1,6 +1,6 @@
 //! Values on the tiles of a level.
 
-use rc_quadtree::TileSet;
+use rc_quadtree::{CELLS, TileSet};
 
 /// Values on tiles, one tile after the other.
 #[derive(Clone, Copy)]
@@ -12,5 +12,11 @@ pub(crate) struct TileValues<'a, T> {
 impl<'a, T> TileValues<'a, T> {
     pub(crate) fn new(values: &'a [T], tiles: &'a TileSet) -> Self {
         Self { values, tiles }
+    }
+
+    /// The values of the tile at a place, if there is one.
+    pub(crate) fn tile(&self, [column, row]: [u32; 2]) -> Option<&'a [T]> {
+        let tile = self.tiles.find(column.into(), row.into())?;
+        Some(&self.values[tile * CELLS..][..CELLS])
     }
 }
