@@ -90,7 +90,7 @@ pub(crate) struct Problem {
     pub(crate) support: Support,
 }
 
-/// Depth of a height that is out of reach, in units of the sum of height range and displacement ([`Problem::out_of_reach`]).
+/// Depth of [`Problem::out_of_reach`], in units of a bound of heights and displacements.
 const OUT_OF_REACH: f64 = 100.0;
 
 impl Problem {

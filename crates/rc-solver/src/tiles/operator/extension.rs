@@ -1,6 +1,6 @@
 //! The approximate inverse of L among the active elements of a mesh.
 //!
-//! [`crate::descent`] has the extension F of a residual to the whole cell. On tiles, u = F r is kept level by level, as
+//! [`crate::grid::extension`] has the extension F of a residual to the whole cell. On tiles, u = F r is kept level by level, as
 //! far as there are tiles. One share of u on a level comes from the means over active elements. The other share is P u
 //! of the next coarser level, where P is the interpolation. The base grid has u on the whole cell, and applies |q|/2 by
 //! its Fourier transform. Each level above adds its stencil of the difference w = u - P u, which is zero where nothing
@@ -13,7 +13,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Arch;
 use rc_fft::Convolution;
 use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE};
 
@@ -22,17 +22,14 @@ use crate::grid::extension::rows::{Parts, Shares};
 use crate::grid::passes::{read_rows, write_rows};
 use crate::parallel;
 use crate::parallel::Tasks;
-use crate::tiles::operator::extension_values::{Means, blocks, own_blocks, set_base};
+use crate::tiles::operator::extension_values::{Means, set_base};
 use crate::tiles::operator::hierarchy::Hierarchy;
 use crate::tiles::operator::interpolation::{cells_over, collect, interpolate};
-use crate::tiles::operator::stencil::{Taps, add_short_range};
+use crate::tiles::operator::passes::{ShortRange, Targets};
 use crate::tiles::operator::tables::Tables;
-use crate::tiles::operator::tile_operator::{rows_to_tiles, tiles_to_rows};
+use crate::tiles::operator::tile_operator::{blocks, own_blocks, rows_to_tiles, tiles_to_rows};
 use crate::tiles::operator::tile_values::TileValues;
 use crate::tiles::part::Part;
-
-/// Side of the patch around a tile.
-const AROUND: usize = 3 * TILE;
 
 /// Values on the base grid or a level between it and the finest.
 struct Level {
@@ -92,7 +89,6 @@ impl TileExtension {
         active: &[bool],
         values: &mut [f32],
     ) {
-        debug_assert_eq!(tables.sizes.around, AROUND, "taps are for patches of this side");
         self.extend(active, values, finest);
         self.apply_stencils(arch, tables, finest, values);
         self.convolve_base(convolution, tables);
@@ -117,7 +113,7 @@ impl TileExtension {
                 set_base(hierarchy, values, |places, cells| means.set(places, cells));
             } else {
                 let part = &hierarchy.levels[level];
-                parallel::for_each(own_blocks(part, values), |(places, cells)| means.set(places, cells));
+                parallel::for_each(own_blocks(part, values), |Targets { places, cells }| means.set(places, cells));
                 part.exchange(values);
             }
         }
@@ -161,8 +157,9 @@ impl TileExtension {
                 None => (finest, &mut *values),
             };
             let around = TileValues::new(detail, part.tiles());
-            parallel::for_each(blocks(part.own_places(), cells), |(places, cells)| {
-                arch.dispatch(StencilPass { taps, around, places, cells });
+            parallel::for_each(blocks(part.own_places(), cells), |targets| {
+                targets.cells.fill(0.0);
+                (tables.sizes.passes.add_stencil)(arch, &ShortRange { taps, values: around }, targets);
             });
         }
     }
@@ -202,7 +199,7 @@ impl TileExtension {
             let (part, own) = (&hierarchy.levels[level], hierarchy.levels[level].own_cells());
             let others = parts.rest[own.clone()].chunks(BLOCK_CELLS).zip(pressure[own.clone()].chunks(BLOCK_CELLS));
             let blocks = own_blocks(part, values).zip(detail[own].chunks_mut(BLOCK_CELLS)).zip(others);
-            parallel::for_each(blocks, |(((places, values), given), (rest, pressure))| {
+            parallel::for_each(blocks, |((Targets { places, cells: values }, given), (rest, pressure))| {
                 collect(finer, places, values);
                 for ((value, given), (rest, pressure)) in values.iter_mut().zip(given).zip(rest.iter().zip(pressure)) {
                     *value += pressure;
@@ -239,7 +236,7 @@ impl TileExtension {
         for (level, here) in self.levels.iter().enumerate().skip(1) {
             let Some((range, leaves)) = self.hierarchy.elements_of(level) else { continue };
             let blocks = blocks(leaves.places(), &mut values[range.clone()]).zip(active[range].chunks(BLOCK_CELLS));
-            parallel::for_each(blocks, |((places, values), active)| {
+            parallel::for_each(blocks, |(Targets { places, cells: values }, active)| {
                 let cells = values.as_chunks_mut::<CELLS>().0.iter_mut().zip(active.chunks(CELLS));
                 for (&place, (cells, active)) in places.iter().zip(cells) {
                     let found = TileValues::new(&here.values, tiles[level].tiles()).tile(place);
@@ -271,7 +268,7 @@ fn blend(
     (values, detail): (&mut [f32], &mut [f32]),
 ) {
     let blocks = blocks(places, values).zip(detail.chunks_mut(BLOCK_CELLS)).enumerate();
-    parallel::for_each(blocks, |(block, ((places, values), detail))| {
+    parallel::for_each(blocks, |(block, (Targets { places, cells: values }, detail))| {
         let mut around = [0.0; CELLS];
         let cells = values.as_chunks_mut::<CELLS>().0.iter_mut().zip(detail.as_chunks_mut::<CELLS>().0);
         for (i, (&place, (values, detail))) in places.iter().zip(cells).enumerate() {
@@ -289,30 +286,9 @@ fn blend(
 
 /// Changes values for u on tiles to those for own values.
 fn add_cells_over(places: &[[u32; 2]], coarser: TileValues<'_, f32>, shares: Shares<'_>, values: &mut [f32]) {
-    parallel::for_each(blocks(places, values).enumerate(), |(block, (places, values))| {
+    parallel::for_each(blocks(places, values).enumerate(), |(block, Targets { places, cells: values })| {
         for (i, (&place, values)) in places.iter().zip(values.as_chunks_mut::<CELLS>().0).enumerate() {
             shares.part(cells_of(block * BLOCK_TILES + i)).hand_down(&cells_over(coarser, place), values);
         }
     });
-}
-
-/// The stencil of a level on some of its tiles.
-struct StencilPass<'a> {
-    taps: &'a Taps<f32>,
-    around: TileValues<'a, f32>,
-    places: &'a [[u32; 2]],
-    cells: &'a mut [f32],
-}
-
-impl WithSimd for StencilPass<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let mut patch = [[0.0; AROUND]; AROUND];
-        for (&place, out) in self.places.iter().zip(self.cells.as_chunks_mut::<CELLS>().0) {
-            *out = [0.0; CELLS];
-            add_short_range::<S, f32, AROUND>(self.taps, self.around, place, &mut patch, out);
-        }
-    }
 }

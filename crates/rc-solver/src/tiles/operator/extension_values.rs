@@ -2,40 +2,25 @@
 //!
 //! A rank sets its own values, as means over finer levels.
 
-use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, means_of_quarter, quarters};
+use rc_quadtree::{CELLS, means_of_quarter, quarters};
 
 use crate::parallel;
 use crate::tiles::operator::hierarchy::Hierarchy;
+use crate::tiles::operator::passes::Targets;
+use crate::tiles::operator::tile_operator::blocks;
 use crate::tiles::operator::tile_values::TileValues;
-use crate::tiles::part::Part;
-
-/// The tiles, block by block. There may be more values than tiles.
-pub(super) fn blocks<'a>(
-    places: &'a [[u32; 2]],
-    cells: &'a mut [f32],
-) -> impl Iterator<Item = (&'a [[u32; 2]], &'a mut [f32])> {
-    places.chunks(BLOCK_TILES).zip(cells.chunks_mut(BLOCK_CELLS))
-}
-
-/// The own tiles of a level, block by block, from the values of all tiles.
-pub(super) fn own_blocks<'a>(
-    part: &'a Part,
-    cells: &'a mut [f32],
-) -> impl Iterator<Item = (&'a [[u32; 2]], &'a mut [f32])> {
-    blocks(part.own_places(), &mut cells[part.own_cells()])
-}
 
 /// Sets the values of the base grid. Each rank sets those of its tiles.
 pub(super) fn set_base(hierarchy: &Hierarchy, base: &mut [f32], set: impl Fn(&[[u32; 2]], &mut [f32]) + Sync) {
     let places = hierarchy.levels[0].tiles().places();
     let Some(part) = &hierarchy.base_part else {
-        parallel::for_each(blocks(places, base), |(places, cells)| set(places, cells));
+        parallel::for_each(blocks(places, base), |Targets { places, cells }| set(places, cells));
         return;
     };
     let mut own = vec![0.0; part.own_places().len() * CELLS];
-    parallel::for_each(blocks(part.own_places(), &mut own), |(places, cells)| set(places, cells));
+    parallel::for_each(blocks(part.own_places(), &mut own), |Targets { places, cells }| set(places, cells));
     let gathered = part.gathered(own);
-    parallel::for_each(blocks(places, base), |(places, cells)| part.copy(&gathered, places, cells));
+    parallel::for_each(blocks(places, base), |Targets { places, cells }| part.copy(&gathered, places, cells));
 }
 
 /// Means over the cells of a level.

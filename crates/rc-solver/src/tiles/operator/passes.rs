@@ -77,10 +77,10 @@ pub(crate) struct CoarseDisplacement<'a, T> {
     pub(crate) level: TileValues<'a, T>,
 }
 
-/// Computes the displacements that ghosts add to the elements around them.
-pub(crate) struct GhostDisplacement<'a, T> {
+/// Computes the stencil of the values on and around tiles.
+pub(crate) struct ShortRange<'a, T> {
     pub(crate) taps: &'a Taps<T>,
-    pub(crate) ghosts: TileValues<'a, T>,
+    pub(crate) values: TileValues<'a, T>,
 }
 
 /// The loops for one number of taps, and for patches of one size.
@@ -94,7 +94,7 @@ pub(crate) struct TilePasses<T> {
     pub(crate) displace_coarse: fn(Arch, &CoarseDisplacement<'_, T>, Targets<'_, T>),
     /// Pass that adds to the targets, like the one below.
     pub(crate) add_coarse: fn(Arch, &CoarseDensity<'_, T>, Targets<'_, T>),
-    pub(crate) add_ghosts: fn(Arch, &GhostDisplacement<'_, T>, Targets<'_, T>),
+    pub(crate) add_stencil: fn(Arch, &ShortRange<'_, T>, Targets<'_, T>),
 }
 
 impl<T: Arithmetic> TilePasses<T> {
@@ -117,7 +117,7 @@ impl<T: Arithmetic> TilePasses<T> {
             displace_uneven: displace_uneven::<T, OVER, AROUND>,
             displace_coarse: displace_coarse::<T, 0, AROUND>,
             add_coarse: add_coarse::<T, 0, AROUND>,
-            add_ghosts: add_ghosts::<T, 0, AROUND>,
+            add_stencil: add_stencil::<T, 0, AROUND>,
         }
     }
 }
@@ -142,7 +142,7 @@ dispatched!(
     displace_uneven: UnevenDisplacement,
     displace_coarse: CoarseDisplacement,
     add_coarse: CoarseDensity,
-    add_ghosts: GhostDisplacement
+    add_stencil: ShortRange
 );
 
 /// A pass for filters of `TAPS` taps, if it has filters, and patches of `SIDE` cells per side.
@@ -268,17 +268,15 @@ impl<T: Arithmetic, const TAPS: usize, const SIDE: usize> WithSimd
     }
 }
 
-impl<T: Arithmetic, const TAPS: usize, const SIDE: usize> WithSimd
-    for Loop<'_, GhostDisplacement<'_, T>, T, TAPS, SIDE>
-{
+impl<T: Arithmetic, const TAPS: usize, const SIDE: usize> WithSimd for Loop<'_, ShortRange<'_, T>, T, TAPS, SIDE> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let GhostDisplacement { taps, ghosts } = self.pass;
+        let ShortRange { taps, values } = self.pass;
         let mut patch = [[T::default(); SIDE]; SIDE];
         for (place, out) in self.targets.tiles() {
-            add_short_range::<S, T, SIDE>(taps, *ghosts, place, &mut patch, out);
+            add_short_range::<S, T, SIDE>(taps, *values, place, &mut patch, out);
         }
     }
 }

@@ -17,7 +17,7 @@ use crate::tiles::base::Base;
 use crate::tiles::operator::coarse::Leaves;
 use crate::tiles::operator::hierarchy::Hierarchy;
 use crate::tiles::operator::passes::{
-    CoarseDensity, CoarseDisplacement, Displacement, GhostDisplacement, Restriction, Targets, UnevenDisplacement,
+    CoarseDensity, CoarseDisplacement, Displacement, Restriction, ShortRange, Targets, UnevenDisplacement,
     UnevenRestriction,
 };
 use crate::tiles::operator::sizes::Real;
@@ -255,8 +255,8 @@ impl<T: Real> TileOperator<T> {
         let Some(table) = tables.coarse_table(coarser + 1) else { return };
         let ghosts = TileValues::new(&self.ghosts[coarser], &larger.ghosts);
         let places = &self.hierarchy.elements().levels()[coarser].places()[tiles];
-        let pass = GhostDisplacement { taps: &table.across, ghosts };
-        (tables.sizes.passes.add_ghosts)(self.arch, &pass, Targets { places, cells });
+        let pass = ShortRange { taps: &table.across, values: ghosts };
+        (tables.sizes.passes.add_stencil)(self.arch, &pass, Targets { places, cells });
     }
 }
 
@@ -277,14 +277,14 @@ fn restrict<T: Real>(
     }
 }
 
-/// The tiles of a level, block by block.
-fn blocks<'a, T>(places: &'a [[u32; 2]], cells: &'a mut [T]) -> impl Iterator<Item = Targets<'a, T>> {
+/// The tiles of a level, block by block. There may be more values than tiles.
+pub(crate) fn blocks<'a, T>(places: &'a [[u32; 2]], cells: &'a mut [T]) -> impl Iterator<Item = Targets<'a, T>> {
     let blocks = cells.chunks_mut(BLOCK_CELLS).zip(places.chunks(BLOCK_TILES));
     blocks.map(|(cells, places)| Targets { places, cells })
 }
 
 /// The own tiles of a level, block by block, from the values of all tiles.
-fn own_blocks<'a, T>(part: &'a Part, cells: &'a mut [T]) -> impl Iterator<Item = Targets<'a, T>> {
+pub(crate) fn own_blocks<'a, T>(part: &'a Part, cells: &'a mut [T]) -> impl Iterator<Item = Targets<'a, T>> {
     blocks(part.own_places(), &mut cells[part.own_cells()])
 }
 
