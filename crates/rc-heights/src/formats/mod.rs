@@ -136,9 +136,7 @@ pub fn read_with(path: &Path, params: &ReadParams) -> Result<HeightMap, ReadErro
         // Arrays may be as large as memory, so they are not read as bytes first.
         let max_bytes = file.limit(params);
         let (stream, bytes) = file.stream();
-        return npy::map(stream, bytes, params.layout, max_bytes)
-            .and_then(|map| checked(map, &params.missing))
-            .map_err(fail);
+        return npy::map(stream, bytes, params, max_bytes).and_then(|map| checked(map, &params.missing)).map_err(fail);
     }
     let format = layout::format(file.format, params.layout);
     let bytes = file.whole(format, params);
@@ -204,7 +202,7 @@ pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<H
 }
 
 /// The channels of a file of the given format.
-fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &ReadParams) -> Channels<'a> {
+fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &'a ReadParams) -> Channels<'a> {
     Ok(match format {
         Format::Al3d => al3d::channels(bytes)?,
         Format::Csv => text::channels(bytes, params.layout, &params.missing)?,
@@ -218,7 +216,7 @@ fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &ReadParams) -> Channel
         // Exports as text have the same header.
         Format::Nanoscope if is_text(bytes) => text::channels(bytes, params.layout, &params.missing)?,
         Format::Nanoscope => nanoscope::channels(bytes)?,
-        Format::Npy => npy::channels(bytes, params.layout, params.max_bytes),
+        Format::Npy => npy::channels(bytes, params),
         Format::Opd => opd::channels(bytes)?,
         Format::Plu => plu::channels(bytes)?,
         Format::Plux => plux::channels(bytes, params.max_bytes)?,

@@ -15,6 +15,7 @@ use super::field::{field, transposed};
 use super::fields::shown_as_line;
 use super::layout::Layout;
 use super::limit;
+use super::params::ReadParams;
 use super::points::{self, Kind};
 use super::records::{self, Record};
 use crate::{Format, FormatError, HeightMap, ReadError, Unit};
@@ -53,8 +54,8 @@ pub fn read_from(file: impl Read, bytes: u64) -> Result<Field, FormatError> {
 }
 
 /// The channel of a file, read when it is asked for.
-pub(super) fn channels(bytes: &[u8], layout: Option<Layout>, max_bytes: u64) -> Vec<Channel<'_>> {
-    only(move || map(bytes, bytes.len() as u64, layout, max_bytes))
+pub(super) fn channels<'a>(bytes: &'a [u8], params: &'a ReadParams) -> Vec<Channel<'a>> {
+    only(move || map(bytes, bytes.len() as u64, params, params.max_bytes))
 }
 
 /// Reads a map, or points on a regular grid, from a file of `bytes` bytes.
@@ -63,18 +64,13 @@ pub(super) fn channels(bytes: &[u8], layout: Option<Layout>, max_bytes: u64) -> 
 ///
 /// # Errors
 /// [`FormatError`] when the contents are neither, or need more than `max_bytes` of memory.
-pub(super) fn map(
-    file: impl Read,
-    bytes: u64,
-    layout: Option<Layout>,
-    max_bytes: u64,
-) -> Result<HeightMap, FormatError> {
+pub(super) fn map(file: impl Read, bytes: u64, params: &ReadParams, max_bytes: u64) -> Result<HeightMap, FormatError> {
     let npy = Array::open(file, bytes)?;
     if let DType::Record(_) = npy.header.dtype() {
         return npy.points(max_bytes).map(of_array);
     }
     let shape = npy.sides()?;
-    let (order, kind) = (npy.header.order(), Kind::of(Format::Npy, shape, layout)?);
+    let (order, kind) = (npy.header.order(), Kind::of(Format::Npy, shape, params.layout_of(shape))?);
     if kind == Kind::Map {
         let grid = npy.grid()?;
         npy.count(real_type(&npy.header.dtype())?.1)?;

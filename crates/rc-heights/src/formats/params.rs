@@ -11,6 +11,8 @@ pub struct ReadParams {
     pub channel: Option<String>,
     /// Layout of a text. `None` means the layout that its first lines suggest.
     pub layout: Option<Layout>,
+    /// Whether an array of one row or one column is a map: both sides of its cell are known, so it is no profile.
+    pub row_is_map: bool,
     /// Values that mark missing points, in the numbers of the file.
     pub missing: Vec<f64>,
     /// What a mask in the file means.
@@ -26,10 +28,18 @@ impl Default for ReadParams {
         Self {
             channel: None,
             layout: None,
+            row_is_map: false,
             missing: Vec::new(),
             mask: Mask::default(),
             max_bytes: DEFAULT_MAX_BYTES,
             max_plain_bytes: u64::MAX,
         }
+    }
+}
+
+impl ReadParams {
+    /// The layout of an array of this shape.
+    pub(super) fn layout_of(&self, shape: [u64; 2]) -> Option<Layout> {
+        self.layout.or((self.row_is_map && shape.contains(&1)).then_some(Layout::Matrix))
     }
 }
