@@ -95,7 +95,7 @@ impl Certificate {
         // The weighted mean of g is zero, so Σ p (g - min g) / Σ p is -min g. The two errors coincide, unless elements
         // are plastic.
         let [complementarity, penetration] = [excess, overlap].map(|error| ratio(error, range));
-        let (load, off) = match problem.control {
+        let (load, off) = match problem.bounds.control {
             Control::MeanPressure(wanted) => ((mean_pressure - wanted).abs() / wanted, 0.0),
             Control::Penetration(_) => (ratio(mean_gap.abs(), range), mean_gap.abs()),
         };

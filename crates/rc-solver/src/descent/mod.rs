@@ -13,19 +13,20 @@
 //! range H, so no scene underflows.
 
 pub(crate) mod certificate;
+pub(crate) mod descending_round;
 pub(crate) mod directions;
 pub(crate) mod gap;
 pub(crate) mod info;
 pub(crate) mod layout;
-pub(crate) mod limited;
-pub(crate) mod mean;
+pub(crate) mod load;
 pub(crate) mod observed;
 pub(crate) mod operators;
 pub(crate) mod outcome;
+pub(crate) mod penetration;
+pub(crate) mod project;
 pub(crate) mod round;
 pub(crate) mod rows;
 pub(crate) mod run;
-pub(crate) mod safe_round;
 pub(crate) mod shares;
 pub(crate) mod start;
 pub(crate) mod state;

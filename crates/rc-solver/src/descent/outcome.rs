@@ -28,12 +28,12 @@ impl Outcome {
     /// The cell has room for `n_cell` elements.
     pub(crate) fn new(problem: &Problem, sums: &GapSums, n_cell: f64, converged: bool) -> Self {
         let mean_pressure = sums.load() / n_cell;
-        let mean_gap = sums.reference_gap(problem);
+        let contact = sums.multiplier(problem.bounds);
         let elastic_energy = 0.5 * sums.work() / n_cell;
         let residuals = Residuals {
-            least_gap: sums.min_gap - mean_gap,
-            excess: sums.excess(problem) + (sums.mean_gap(problem) - mean_gap).abs(),
-            mean_gap,
+            least_gap: sums.min_gap - contact,
+            excess: sums.excess() + (sums.mean_gap().unwrap_or(contact) - contact).abs(),
+            mean_gap: contact,
             mean_pressure,
             elastic_energy: elastic_energy - problem.uniform_energy(mean_pressure),
         };
@@ -43,9 +43,9 @@ impl Outcome {
             certificate,
             iteration_error: certificate.energy,
             mean_pressure,
-            approach: mean_gap - problem.offset(),
+            approach: contact - problem.offset(),
             elastic_energy,
-            contact_gap: sums.zero_gap(problem),
+            contact_gap: sums.zero_gap(problem.bounds),
         }
     }
 

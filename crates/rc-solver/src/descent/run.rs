@@ -2,6 +2,7 @@
 
 use rc_core::{Event, Observer};
 
+use crate::descent::descending_round::has_risen;
 use crate::descent::observed::ObservedMesh;
 use crate::descent::outcome::Outcome;
 use crate::descent::state::Descent;
@@ -13,18 +14,8 @@ use crate::problem::tolerance::ErrorBound;
 /// `docs/measurements-uniform.md` compares one to three steps.
 const STEPS_PER_ROUND: usize = 2;
 
-/// Rounds without progress after which no round may raise the energy.
-///
-/// Descents that converge without safe rounds rarely have as many, so this rule keeps their results.
-const HESITATION: usize = 4;
-
-/// Rounds without progress before directions are forgotten.
-///
-/// The iteration gives up after three times as many. From the first round without progress on, tensile pressures are
-/// clipped after every step. Where pressures are smooth over many contacts, steps are large and contacts change under
-/// them. Two steps between clippings then lead astray. `docs/measurements-uniform.md` has the loads that converge with
-/// this rule.
-const PATIENCE: usize = 20;
+/// Rounds without progress after which the iteration gives up.
+const PATIENCE: usize = 60;
 
 /// An error below this part of the smallest error so far is progress.
 const PROGRESS: f64 = 0.9;
@@ -54,12 +45,17 @@ struct ErrorHistory {
     /// Number of rounds since the smallest error.
     rounds: usize,
     /// Number of conjugate-gradient steps in the next round.
+    ///
+    /// From the first round without progress on, it is 1. Where pressures are smooth over many contacts, steps are
+    /// large and contacts change under them. Two steps between clippings then lead astray.
     steps: usize,
+    /// Whether a round has raised the energy. From then on, no round may.
+    has_strayed: bool,
 }
 
 impl ErrorHistory {
     fn new() -> Self {
-        Self { smallest_error: f64::INFINITY, rounds: 0, steps: STEPS_PER_ROUND }
+        Self { smallest_error: f64::INFINITY, rounds: 0, steps: STEPS_PER_ROUND, has_strayed: false }
     }
 
     fn note(&mut self, error: f64) {
@@ -93,18 +89,15 @@ impl Descent<'_> {
                 }
             }
             history.note(error);
-            if history.rounds == PATIENCE {
-                self.curvature = f64::INFINITY;
-            }
-            if self.info.iterations >= goal.max_iterations || history.rounds > 3 * PATIENCE {
+            if self.info.iterations >= goal.max_iterations || history.rounds > PATIENCE {
                 sums = self.refresh();
                 return self.unfinished(goal, &sums);
             }
             if watch.observer.should_stop() {
                 return self.stopped(goal, sums);
             }
-            let next = if history.rounds > HESITATION {
-                self.safe_round(&sums, watch.observer)
+            let next = if history.has_strayed {
+                self.descending_round(&sums, watch.observer)
             } else {
                 self.round(history.steps, &sums, watch.observer)
             };
@@ -112,6 +105,7 @@ impl Descent<'_> {
                 self.admit();
                 return self.stopped(goal, sums);
             };
+            history.has_strayed |= has_risen(&sums, &next);
             sums = next;
         }
     }
@@ -147,8 +141,8 @@ impl Descent<'_> {
     /// Scales the pressure to the prescribed load or penetration. The gap follows the scaling to rounding, since v is
     /// linear in p.
     pub(crate) fn refresh(&mut self) -> GapSums {
-        if self.problem.hardness.is_finite() {
-            self.limit_pressure();
+        if self.problem.bounds.is_limited() {
+            self.project_to_load();
         }
         let sums = self.fresh_gap();
         self.meet_penetration(sums)

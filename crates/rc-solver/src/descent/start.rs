@@ -1,7 +1,6 @@
 //! The first pressure and gap of a descent.
 
-use crate::descent::gap::{mean_pressure, scale_to_load};
-use crate::descent::limited::is_plastic;
+use crate::descent::load::{is_plastic, mean_pressure};
 use crate::descent::state::Descent;
 use crate::descent::sums::GapSums;
 use crate::parallel;
@@ -58,18 +57,27 @@ impl Descent<'_> {
         let n_cell = self.n_cell();
         let present = mean_pressure(n_cell, &self.layout, &self.pressure);
         let usable = self.has_start && present > 0.0;
-        if usable && is_plastic(&self.pressure, self.problem.hardness) {
-            return if self.has_gap { self.rescale(1.0) } else { self.limit_start() };
+        if usable && is_plastic(&self.pressure, self.problem.bounds) {
+            return if self.has_gap { self.rescale(1.0) } else { self.plastic_start() };
         }
         let sums = self.elastic_start(present, usable);
-        self.limited(sums)
+        self.within_bounds(sums)
+    }
+
+    /// Projects a start that has reached the hardness, without a gap.
+    pub(crate) fn plastic_start(&mut self) -> GapSums {
+        for (g, h) in self.gap.iter_mut().zip(self.heights) {
+            *g = -h;
+        }
+        self.project_to_load();
+        let sums = self.fresh_gap();
+        self.settle(sums)
     }
 
     /// Computes the first pressure and gap, as if there were no hardness.
     fn elastic_start(&mut self, present: f64, usable: bool) -> GapSums {
-        let n_cell = self.n_cell();
         if self.has_gap && usable {
-            return match self.problem.control {
+            return match self.problem.bounds.control {
                 Control::MeanPressure(mean) => self.rescale(mean / present),
                 Control::Penetration(_) => {
                     let sums = self.rescale(1.0);
@@ -77,9 +85,9 @@ impl Descent<'_> {
                 }
             };
         }
-        match self.problem.control {
+        match self.problem.bounds.control {
             Control::MeanPressure(mean) if !usable => return self.overlap_of_load(mean),
-            Control::MeanPressure(_) => scale_to_load(self.problem, n_cell, &self.layout, &mut self.pressure),
+            Control::MeanPressure(_) => self.project_to_load(),
             Control::Penetration(_) if usable => {}
             // The overlap finds the right places. The pressure is scaled at once.
             Control::Penetration(_) => {
@@ -134,7 +142,7 @@ impl Descent<'_> {
             }
         }
         self.pressure.fill(wanted);
-        scale_to_load(self.problem, n_cell, &self.layout, &mut self.pressure);
+        self.project_to_load();
         self.refresh()
     }
 }

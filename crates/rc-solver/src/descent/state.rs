@@ -42,6 +42,8 @@ pub(crate) struct Descent<'a> {
     pub(crate) zero_gap: f64,
     /// Pressure above which elements are well inside contact.
     pub(crate) pressed: f64,
+    /// Whether the last step along p (1 - p/H) has found a stiffness for the mean.
+    pub(crate) knows_stiffness: bool,
     /// Whether a pressure was given to start from. The flag below says the same of the gap.
     pub(crate) has_start: bool,
     pub(crate) has_gap: bool,
@@ -92,6 +94,7 @@ impl<'a> Descent<'a> {
             is_chosen: false,
             zero_gap: 0.0,
             pressed: f64::INFINITY,
+            knows_stiffness: false,
             has_start,
             has_gap,
             info: LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 },
@@ -157,7 +160,7 @@ impl<'a> Descent<'a> {
             &mut *self.operators.fresh,
             self.problem,
             elements,
-            GapSums::empty(self.pressed, self.problem.hardness),
+            GapSums::empty(self.pressed, self.problem.bounds.hardness),
         );
         self.operators.fresh.release();
         self.pressed = sums.next_pressed();
@@ -167,7 +170,7 @@ impl<'a> Descent<'a> {
     /// Multiplies the pressure by `scale`. The gap follows.
     pub(crate) fn rescale(&mut self, scale: f64) -> GapSums {
         let (layout, problem) = (self.layout.clone(), self.problem);
-        let empty = GapSums::empty(self.pressed, problem.hardness);
+        let empty = GapSums::empty(self.pressed, problem.bounds.hardness);
         let sums = rescale(scale, &layout, problem, self.elements(), empty);
         self.pressed = sums.next_pressed();
         self.settle(sums)
@@ -175,7 +178,7 @@ impl<'a> Descent<'a> {
 
     /// Notes the gap of elements in contact.
     pub(crate) fn settle(&mut self, sums: GapSums) -> GapSums {
-        self.zero_gap = sums.zero_gap(self.problem);
+        self.zero_gap = sums.zero_gap(self.problem.bounds);
         sums
     }
 

@@ -5,7 +5,6 @@
 
 use rc_core::Observer;
 
-use crate::descent::gap::scale_to_load;
 use crate::descent::state::Descent;
 use crate::parallel;
 
@@ -13,7 +12,7 @@ use crate::parallel;
 ///
 /// The pressure may have taken a step that was not projected. [`Descent::admit`] makes it a start again.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stopped;
+pub(crate) struct Stopped;
 
 /// Ends a round if the observer wants to stop.
 pub(super) fn unless_stopped(observer: &dyn Observer) -> Result<(), Stopped> {
@@ -28,11 +27,11 @@ impl Descent<'_> {
         if self.info.iterations == 0 {
             return;
         }
-        let hardness = self.problem.hardness;
-        parallel::update(&mut self.pressure, |p| *p = p.clamp(0.0, hardness));
+        let bounds = self.problem.bounds;
+        parallel::update(&mut self.pressure, |p| *p = p.clamp(0.0, bounds.hardness));
         // With a hardness, the fresh gap restores the load.
-        if hardness.is_infinite() {
-            scale_to_load(self.problem, self.n_cell(), &self.layout, &mut self.pressure);
+        if !bounds.is_limited() {
+            self.project_to_load();
         }
     }
 }

@@ -5,7 +5,8 @@
 use rc_core::{Field, Kernel, Operator};
 
 use crate::grid::direct_sum::DirectSum;
-use crate::problem::checked::{Load, Problem};
+use crate::problem::bounds::Bounds;
+use crate::problem::checked::Problem;
 use crate::problem::control::Control;
 use crate::problem::error::ProblemError;
 use crate::problem::params::IterationParams;
@@ -48,7 +49,7 @@ pub fn solve_dense_with_hardness(
     penetration: f64,
     hardness: f64,
 ) -> Result<Option<Field>, ProblemError> {
-    let load = Load { control: Control::Penetration(penetration), hardness };
+    let load = Bounds { control: Control::Penetration(penetration), hardness };
     let (support, params) = (Support::of(kernel, heights.grid()), IterationParams::relative(1e-6));
     let problem = Problem::check_on(support, heights, load, &params)?;
     let grid = heights.grid();

@@ -18,7 +18,7 @@ use crate::problem::tolerance::ErrorBound;
 /// Under pressure control it is the prescribed one. On a layer, a penetration beyond full contact of the half-space
 /// compresses the layer. The mean pressure is then the one of this compression.
 pub(crate) fn mean_pressure(problem: &Problem) -> Option<f64> {
-    match problem.control {
+    match problem.bounds.control {
         Control::MeanPressure(value) => Some(value),
         Control::Penetration(depth) => {
             let pressure = (depth - (problem.h_max - problem.h_mean)) / problem.support.compliance;
@@ -54,7 +54,7 @@ pub(crate) fn solve(
         }
         [least, greatest]
     });
-    if extremes.into_iter().any(|[least, greatest]| least < 0.0 || greatest > problem.hardness) {
+    if extremes.into_iter().any(|[least, greatest]| least < 0.0 || greatest > problem.bounds.hardness) {
         return None;
     }
     let solution = certified(heights, kernel, problem, (pressure, mean_pressure), &mut inverse);
@@ -160,7 +160,7 @@ fn certified(
     let least = if approach.is_finite() { gap.min() } else { f64::NAN };
     let mean = total / grid.len() as f64;
     let elastic_energy = 0.5 * work / grid.len() as f64;
-    let mean_gap = match problem.control {
+    let mean_gap = match problem.bounds.control {
         Control::MeanPressure(_) => 0.0,
         Control::Penetration(_) => approach + problem.offset(),
     };

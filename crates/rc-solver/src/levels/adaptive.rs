@@ -23,7 +23,8 @@ use crate::levels::params::AdaptiveParams;
 use crate::levels::setup::Place;
 use crate::levels::setup::Splits;
 use crate::problem::adaptive_error::AdaptiveError;
-use crate::problem::checked::{Load, Problem};
+use crate::problem::bounds::Bounds;
+use crate::problem::checked::Problem;
 #[cfg(test)]
 use crate::problem::control::Control;
 use crate::problem::support::Support;
@@ -93,14 +94,14 @@ impl<'a> AdaptiveProblem<'a> {
     /// [`AdaptiveError`].
     pub(crate) fn on(
         ground: &Arc<Ground<'a>>,
-        load: Load,
+        bounds: Bounds,
         params: &AdaptiveParams,
         place: &Place,
     ) -> Result<Self, AdaptiveError> {
         if !place.ranks.are_alone() && params.border_level > 0 {
             return Err(AdaptiveError::OverRanks { needs: "elements of one size, without a border level" });
         }
-        if !place.ranks.are_alone() && load.hardness.is_finite() {
+        if !place.ranks.are_alone() && bounds.hardness.is_finite() {
             return Err(AdaptiveError::OverRanks { needs: "a problem without a hardness" });
         }
         if !place.ranks.are_alone() && !ground.heights.ladder().is_even() {
@@ -108,7 +109,7 @@ impl<'a> AdaptiveProblem<'a> {
         }
         let split = first_split(params)?;
         let support = Support { boundary: ground.boundary(), compliance: 0.0 };
-        let problem = Problem::of_statistics(ground.heights.extremes(), load, &params.solve, support)?;
+        let problem = Problem::of_statistics(ground.heights.extremes(), bounds, &params.solve, support)?;
         if problem.h_range == 0.0 {
             return Err(AdaptiveError::Flat);
         }
@@ -227,7 +228,7 @@ impl<'a> AdaptiveProblem<'a> {
     fn finish(&self, solved: NestedSolution) -> AdaptiveSolution {
         let NestedSolution { grid, level, levels, coarser, .. } = solved;
         let SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, .. } = level;
-        let (contact_gap, hardness) = (outcome.contact_gap, self.problem.hardness);
+        let (contact_gap, hardness) = (outcome.contact_gap, self.problem.bounds.hardness);
         let values = Values { mesh: &elements, pressure: &pressure, gap: &gap, contact_gap, hardness };
         let (area, plastic) = (values.contact_area(grid), values.plastic_edges(grid));
         let mut info = outcome.info(&self.problem, levels, coarser);

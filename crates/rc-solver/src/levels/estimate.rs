@@ -77,13 +77,13 @@ impl Estimate {
     pub(crate) fn new(heights: &Heights<'_>, border_level: usize, problem: &Problem, period: [usize; 2]) -> Self {
         let (base, boundary) = (heights.base(), problem.support.boundary);
         let of_load = |pressure: f64| PROPORTIONALITY * pressure / rms_slope(base, boundary);
-        let area = match problem.control {
-            Control::MeanPressure(pressure) => of_load(pressure).max(pressure / problem.hardness),
+        let area = match problem.bounds.control {
+            Control::MeanPressure(pressure) => of_load(pressure).max(pressure / problem.bounds.hardness),
             // The undeformed surfaces overlap on a larger area than they touch on. The penetration of a patch may be
             // larger than all its heights.
             Control::Penetration(penetration) => {
                 let overlap = overlap(base, heights.extremes().greatest - penetration);
-                let is_free = boundary == Boundary::Free && problem.hardness.is_infinite();
+                let is_free = boundary == Boundary::Free && problem.bounds.hardness.is_infinite();
                 if is_free { overlap.min(of_load(LOAD_PER_DEPTH * penetration)) } else { overlap }
             }
         };

@@ -10,9 +10,9 @@ use rayon::prelude::*;
 use rc_core::{Grid, Observer};
 use rc_quadtree::{BLOCK_CELLS, ContactFields};
 
-use crate::descent::gap::{fresh_gap, rescale, scale_to_load};
+use crate::descent::gap::{fresh_gap, rescale};
 use crate::descent::info::LevelInfo;
-use crate::descent::limited::limit_to_load;
+use crate::descent::load::project_to_load;
 use crate::descent::operators::{BlockOperator, LevelOperators, write_blocks};
 use crate::descent::outcome::Outcome;
 use crate::descent::rows::ElementValues;
@@ -153,11 +153,7 @@ struct FinestLevel<'s, 'a> {
 impl<'s, 'a> FinestLevel<'s, 'a> {
     fn new(setup: &'s Setup<'a>, grid: Grid, mut start: MeshStart, contact_gap: f64) -> Self {
         let (n_cell, layout) = (grid.len() as f64, start.elements.layout());
-        if setup.is_plastic(&start.pressure) {
-            limit_to_load(&setup.problem, n_cell, &layout, &mut start.pressure, None);
-        } else {
-            scale_to_load(&setup.problem, n_cell, &layout, &mut start.pressure);
-        }
+        project_to_load(&setup.problem, n_cell, &layout, &mut start.pressure, None);
         let tables = OperatorTables {
             quick: setup.quick.tables(grid),
             preconditioner: setup.preconditioner.tables(grid),
@@ -218,13 +214,13 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let (prepared, tables) = tables.gaps.choose(setup, certify);
         let mut pressure = current.elements.moved(elements, &current.pressure, 0.0);
         let mut gap = vec![0.0; pressure.len()];
-        if setup.problem.hardness.is_finite() {
+        if setup.problem.bounds.is_limited() {
             // Single precision has changed the load a little.
-            limit_to_load(&setup.problem, info.grid.len() as f64, &elements.layout(), &mut pressure, None);
+            project_to_load(&setup.problem, info.grid.len() as f64, &elements.layout(), &mut pressure, None);
         }
         let hierarchy = setup.hierarchy(elements, prepared.reach());
         let mut operator = setup.operator(hierarchy, tables, current);
-        let empty = GapSums::empty(f64::INFINITY, setup.problem.hardness);
+        let empty = GapSums::empty(f64::INFINITY, setup.problem.bounds.hardness);
         let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
         let mut sums = fresh_gap(&mut *operator, &setup.problem, values, empty);
         let scaling = sums.scale_to_penetration(&setup.problem);
@@ -237,7 +233,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let n_levels = setup.n_levels(info.grid);
         let scale = PressureScale::new((elements, &pressure), n_levels, size, outcome.energy_length());
         // Descents leave room for the error of the certifying operator.
-        let error = OperatorError::of(setup.certified().split(), &scale, setup.problem.control);
+        let error = OperatorError::of(setup.certified().split(), &scale, setup.problem.bounds.control);
         outcome.iteration_error = outcome.certificate.energy;
         outcome.certificate = error.added_to(outcome.certificate, setup.problem.h_range);
         (Evaluation { pressure, gap, outcome, scale, error, scaling: scaling.unwrap_or(1.0) }, operator)

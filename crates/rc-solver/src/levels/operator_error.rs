@@ -127,7 +127,7 @@ pub(crate) fn certifying_split(
     if scale.energy_length.is_nan() || scale.energy_length <= 0.0 {
         return split;
     }
-    let is_small = |split: &GapSplit| OperatorError::of(*split, scale, problem.control).is_small(bound, problem);
+    let is_small = |split: &GapSplit| OperatorError::of(*split, scale, problem.bounds.control).is_small(bound, problem);
     let mut candidates = std::iter::successors(Some(split), |split| split.finer());
     candidates.find(is_small).unwrap_or_else(GapSplit::most_accurate)
 }
@@ -138,7 +138,7 @@ pub(crate) fn can_certify(scale: &PressureScale, bound: ErrorBound, problem: &Pr
     // A coarser level that has lost its contact says nothing.
     scale.energy_length.is_nan()
         || scale.energy_length <= 0.0
-        || OperatorError::of(split, scale, problem.control).is_small(bound, problem)
+        || OperatorError::of(split, scale, problem.bounds.control).is_small(bound, problem)
 }
 
 #[cfg(test)]

@@ -6,8 +6,7 @@ use rc_comm::Ranks;
 use rc_core::Grid;
 use rc_quadtree::{ContactFields, Elements, RING, divide};
 
-use crate::descent::gap::mean_pressure;
-use crate::descent::limited::is_plastic;
+use crate::descent::load::mean_pressure;
 use crate::levels::checkpoint::Checkpoint;
 use crate::levels::ground::Ground;
 use crate::levels::params::AdaptiveParams;
@@ -106,7 +105,7 @@ impl<'a> Setup<'a> {
     /// Approximate mean of pressures like that of `start`.
     pub(crate) fn mean_pressure(&self, start: &MeshStart) -> f64 {
         let n_cell = start.elements.finest().sides().into_iter().product::<usize>() as f64;
-        match self.problem.control {
+        match self.problem.bounds.control {
             Control::MeanPressure(mean) => mean,
             Control::Penetration(_) => mean_pressure(n_cell, &start.elements.layout(), &start.pressure),
         }
@@ -152,17 +151,12 @@ impl<'a> Setup<'a> {
         possible_contact(smooth, heights, gap - self.problem.offset(), (extent, self.ranks))
     }
 
-    /// Whether a pressure has reached the hardness.
-    pub(crate) fn is_plastic(&self, pressure: &[f64]) -> bool {
-        is_plastic(pressure, self.problem.hardness)
-    }
-
     /// The mesh with elements divided where they are too coarse for their pressure and gap.
     ///
     /// With `deepen`, the smallest elements are divided too.
     pub(crate) fn refined(&self, fields: &ContactFields<'_>, deepen: bool) -> Elements {
         let (heights, pressure) = (self.heights.curvature(), parallel::maximum(fields.pressure, 0.0));
-        let hardness = self.problem.hardness;
+        let hardness = self.problem.bounds.hardness;
         // No pressure is nearer than the ring. So ∫ p |∂²(1/πr)/∂x²| dA ≤ max p ∫ 2/(π r³) dA.
         let of_displacement = |side: f64| 4.0 * pressure / ((RING - 1) as f64 * side);
         let curvature = |coarser| heights + of_displacement(fields.elements.side(coarser));

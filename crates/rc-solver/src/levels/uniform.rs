@@ -7,7 +7,8 @@ use rc_core::{Boundary, Field, Kernel, Observer};
 use crate::descent::info::GridSolution;
 use crate::grid::full_contact;
 use crate::levels::nested_grids::{FinestGrid, NestedGrids, coarser_heights};
-use crate::problem::checked::{Load, Problem};
+use crate::problem::bounds::Bounds;
+use crate::problem::checked::Problem;
 use crate::problem::error::ProblemError;
 use crate::problem::params::IterationParams;
 use crate::problem::support::Support;
@@ -37,11 +38,11 @@ pub(crate) const FREE_BYTES_PER_ELEMENT: u64 = 180;
 pub(crate) fn solve_uniform(
     heights: &Field,
     kernel: &dyn Kernel,
-    load: impl Into<Load>,
+    bounds: impl Into<Bounds>,
     params: &IterationParams,
     observer: &dyn Observer,
 ) -> Result<GridSolution, ProblemError> {
-    let problem = Problem::check_on(Support::of(kernel, heights.grid()), heights, load, params)?;
+    let problem = Problem::check_on(Support::of(kernel, heights.grid()), heights, bounds, params)?;
     let boundary = problem.support.boundary;
     let coarser = coarser_heights(heights, boundary);
     if boundary == Boundary::Periodic

@@ -52,7 +52,7 @@ impl Procedure<'_> {
 
     /// Sets the last digits of the load, or of the penetration, by scaling the pressure.
     fn scale_to_control(&mut self, wanted: &[f64]) {
-        let scale = match self.problem.control {
+        let scale = match self.problem.bounds.control {
             Control::MeanPressure(mean) => mean / self.mean_pressure(),
             Control::Penetration(_) => self.weighted(wanted) / self.weighted(&self.displacement_of_elements()),
         };

@@ -107,7 +107,7 @@ impl<'a> Procedure<'a> {
         let (grid, steps) = (self.info.grid, self.params.increments);
         for step in 1..=steps {
             self.observer.notify(&Event::Level { grid, level: step - 1, n_levels: steps });
-            let early = step < steps || matches!(self.problem.control, Control::MeanPressure(_));
+            let early = step < steps || matches!(self.problem.bounds.control, Control::MeanPressure(_));
             let tolerance = if early { self.tolerance.max(EARLY_TOLERANCE) } else { self.tolerance };
             self.settle(step as f64 / steps as f64 * penetration, tolerance)?;
             if self.observer.should_stop() {

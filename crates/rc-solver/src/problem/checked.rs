@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use rc_core::{Boundary, Field};
 
+use crate::problem::bounds::Bounds;
 use crate::problem::control::Control;
 use crate::problem::error::ProblemError;
 use crate::problem::params::IterationParams;
@@ -57,27 +58,11 @@ pub(crate) fn power_of_two_near(value: f64) -> f64 {
     if exponent.is_finite() { 2.0_f64.powi(exponent.round() as i32) } else { 1.0 }
 }
 
-/// The load, and the maximum pressure that the rough body bears.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Load {
-    pub(crate) control: Control,
-    /// H_p in 0 ≤ p ≤ H_p, in E*. It is infinite for an elastic contact.
-    pub(crate) hardness: f64,
-}
-
-impl From<Control> for Load {
-    /// An elastic contact.
-    fn from(control: Control) -> Self {
-        Self { control, hardness: f64::INFINITY }
-    }
-}
-
 /// A checked problem, in the quantities that every level shares.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Problem {
-    pub(crate) control: Control,
-    /// The maximum pressure, in E*. It is infinite for an elastic contact.
-    pub(crate) hardness: f64,
+    /// What a pressure may be.
+    pub(crate) bounds: Bounds,
     /// Maximum height, on the finest grid.
     pub(crate) h_max: f64,
     /// Mean height, on the finest grid.
@@ -96,29 +81,29 @@ const OUT_OF_REACH: f64 = 100.0;
 impl Problem {
     pub(crate) fn check(
         heights: &Field,
-        load: impl Into<Load>,
+        bounds: impl Into<Bounds>,
         params: &IterationParams,
     ) -> Result<Self, ProblemError> {
-        Self::check_on(Support::default(), heights, load, params)
+        Self::check_on(Support::default(), heights, bounds, params)
     }
 
     /// [`Problem::check`] for a solid that a base or free borders may hold.
     pub(crate) fn check_on(
         support: Support,
         heights: &Field,
-        load: impl Into<Load>,
+        bounds: impl Into<Bounds>,
         params: &IterationParams,
     ) -> Result<Self, ProblemError> {
-        Self::of_statistics(HeightStatistics::of(heights)?, load.into(), params, support)
+        Self::of_statistics(HeightStatistics::of(heights)?, bounds.into(), params, support)
     }
 
     pub(crate) fn of_statistics(
         statistics: HeightStatistics,
-        load: Load,
+        bounds: Bounds,
         params: &IterationParams,
         support: Support,
     ) -> Result<Self, ProblemError> {
-        let Load { control, hardness } = load;
+        let Bounds { control, hardness } = bounds;
         let HeightStatistics { greatest: h_max, least: h_min, mean: h_mean } = statistics;
         let h_range = h_max - h_min;
         let full_contact = h_max - h_mean;
@@ -126,7 +111,7 @@ impl Problem {
         if h_range != 0.0 && !(smallest..=greatest).contains(&h_range) {
             return Err(ProblemError::HeightRange { value: h_range, smallest, greatest });
         }
-        check_load(load)?;
+        check_load(bounds)?;
         match control {
             // With a hardness, the penetration may go beyond full contact. A patch with free borders takes any depth,
             // because the depth at which all is plastic depends on its heights.
@@ -145,7 +130,7 @@ impl Problem {
             }
             Control::MeanPressure(_) | Control::Penetration(_) => {}
         }
-        Ok(Self { control, hardness, h_max, h_mean, h_range, measure: params.bound.measure(), support })
+        Ok(Self { bounds, h_max, h_mean, h_range, measure: params.bound.measure(), support })
     }
 
     /// The length that overlaps are compared with: H, or U/σ0 = Σ p v / 2 Σ p.
@@ -163,7 +148,7 @@ impl Problem {
     ///
     /// That value is about the displacement by the load.
     pub(crate) fn unit(&self) -> f64 {
-        match self.control {
+        match self.bounds.control {
             _ if self.h_range > 0.0 => self.h_range,
             Control::MeanPressure(value) | Control::Penetration(value) => value,
         }
@@ -187,7 +172,7 @@ impl Problem {
     /// element displaces it by less than 2 n σ0, and no pressure of this load displaces any place by more. A
     /// penetration Δ needs less than the load 5 Δ. Gaps at this height therefore stay larger than all others.
     pub(crate) fn out_of_reach(&self, n: usize) -> f64 {
-        let (Control::MeanPressure(value) | Control::Penetration(value)) = self.control;
+        let (Control::MeanPressure(value) | Control::Penetration(value)) = self.bounds.control;
         self.h_max - OUT_OF_REACH * (self.h_range + n as f64 * value.abs())
     }
 
@@ -196,7 +181,7 @@ impl Problem {
     /// Under penetration control c = h_max - Δ. Under pressure control Δ is a multiplier, and c = h_max. A large
     /// constant in the heights is therefore not in the gap. It would drown the sums over the gap.
     pub(crate) fn offset(&self) -> f64 {
-        match self.control {
+        match self.bounds.control {
             Control::MeanPressure(_) => self.h_max,
             Control::Penetration(penetration) => self.h_max - penetration,
         }
@@ -204,8 +189,8 @@ impl Problem {
 }
 
 /// Refuses a mean pressure or a hardness that is out of range for all heights.
-pub(crate) fn check_load(load: Load) -> Result<(), ProblemError> {
-    let Load { control, hardness } = load;
+pub(crate) fn check_load(bounds: Bounds) -> Result<(), ProblemError> {
+    let Bounds { control, hardness } = bounds;
     if hardness <= 0.0 || hardness.is_nan() {
         return Err(ProblemError::Hardness { value: hardness });
     }

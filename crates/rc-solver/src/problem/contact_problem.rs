@@ -8,7 +8,7 @@ use rc_kernel::Love;
 
 use crate::levels::checkpoint::Checkpoint;
 use crate::levels::setup::Place;
-use crate::problem::checked::Load;
+use crate::problem::bounds::Bounds;
 use crate::problem::control::Control;
 use crate::problem::kernel::OwnedKernel;
 use crate::problem::support::Support;
@@ -77,8 +77,8 @@ impl<'a> ContactProblem<'a> {
         Support::of(self.kernel.get(), self.heights.grid()).boundary
     }
 
-    pub(crate) fn load(&self) -> Load {
-        Load { control: self.control, hardness: self.hardness }
+    pub(crate) fn bounds(&self) -> Bounds {
+        Bounds { control: self.control, hardness: self.hardness }
     }
 
     /// The same problem with another elastic solid or another discretisation.

@@ -1,6 +1,7 @@
 //! What is asked: bodies, surface, load, bounds of the pressure, tolerance, method, and what is refused.
 
 pub(crate) mod adaptive_error;
+pub(crate) mod bounds;
 pub(crate) mod checked;
 pub(crate) mod contact_problem;
 pub(crate) mod contract;

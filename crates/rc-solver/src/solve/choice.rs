@@ -29,7 +29,7 @@ pub(super) fn plan<'a>(
     shared: Arc<Shared<'a>>,
 ) -> Result<Plan<'a>, SolveError> {
     let bound = params.tolerance.bound(problem.heights.elements_per_wave());
-    check_load(problem.load())?;
+    check_load(problem.bounds())?;
     check_tolerance(bound)?;
     check_grid(&problem.heights)?;
     check_kernel(problem.kernel.get(), problem.heights.grid())?;
@@ -141,7 +141,7 @@ impl<'a> Choice<'a, '_> {
     fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
         let params = self.params.adaptive(self.bound);
         let ground = self.shared.ground(&self.problem.heights, self.boundary(), &params)?;
-        AdaptiveProblem::on(ground, self.problem.load(), &params, &self.problem.place)
+        AdaptiveProblem::on(ground, self.problem.bounds(), &params, &self.problem.place)
     }
 
     /// Chooses the uniform grid after the adaptive method has failed with `error`.

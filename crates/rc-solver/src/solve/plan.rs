@@ -99,7 +99,7 @@ impl<'a> Plan<'a> {
             (Method::GaussSeidel, by_gauss_seidel(&problem, heights, params, observer)?)
         } else {
             let limits = params.iteration(bound);
-            (Method::Uniform, solve_uniform(heights, kernel, problem.load(), &limits, observer)?)
+            (Method::Uniform, solve_uniform(heights, kernel, problem.bounds(), &limits, observer)?)
         };
         let how = how(method, reason);
         let h_max = heights.max();

@@ -206,7 +206,7 @@ impl Scene<'_> {
 
 impl Audited {
     fn error(&self) -> OperatorError {
-        OperatorError::of(self.solved.splits.certified, &self.solved.scale, self.problem.control)
+        OperatorError::of(self.solved.splits.certified, &self.solved.scale, self.problem.bounds.control)
     }
 
     /// Gives `look` the certifying operator, after an application to the pressure, and its displacement.
@@ -236,7 +236,7 @@ impl Audited {
         let mean = |values: &[f64]| self.pressure.iter().zip(values).map(|(p, value)| p / total * value).sum::<f64>();
         let overlap = mean(&gap) - gap.iter().copied().fold(f64::INFINITY, f64::min);
         let penetration = overlap / self.problem.h_range;
-        let off = match self.problem.control {
+        let off = match self.problem.bounds.control {
             Control::MeanPressure(_) => 0.0,
             Control::Penetration(wanted) => (mean(&gap) - wanted).abs(),
         };

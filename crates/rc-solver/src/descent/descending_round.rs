@@ -1,7 +1,7 @@
-//! Rounds that cannot raise the energy, for descents that stray.
+//! Rounds that lower the energy, whatever a step may do.
 //!
-//! Clipping and restored load may undo what a step has gained, for instance in long cells, where a small change of the
-//! load of one place displaces everything. Such rounds repeat each other endlessly.
+//! Clipping and the restored load may undo what a step has gained, for instance in long cells, where a small change of
+//! the load of one place displaces everything. Such rounds would repeat each other endlessly.
 
 use rc_core::Observer;
 
@@ -10,13 +10,20 @@ use crate::descent::stop::Stopped;
 use crate::descent::sums::GapSums;
 use crate::parallel;
 
-/// Factor of all later steps, if no part of a round lowers the energy.
-///
-/// `docs/measurements-uniform.md` compares it with other rules.
+/// Increase of the energy that counts, relative to the work. Single precision may cause a smaller one.
+const RISE: f64 = 1e-7;
+
+/// Factor of the next steps after a round without a part that lowers the energy, and after one that lowers it.
 const SHORTER: f64 = 0.25;
+const LONGER: f64 = 2.0;
+
+/// Whether the energy has risen from one round to the next.
+pub(crate) fn has_risen(before: &GapSums, after: &GapSums) -> bool {
+    after.energy() - before.energy() > RISE * after.work().abs().max(before.work().abs())
+}
 
 impl Descent<'_> {
-    /// Takes the part of a round of one step that lowers the energy most.
+    /// Takes a round of one step, or the part of it that lowers the energy most.
     ///
     /// The pressures before and after a round both meet the bounds of the pressure, and the load if it is given. So
     /// does every pressure between them. The energy ½⟨p, L p⟩ - ⟨p, h⟩ is a parabola there. Its slope and its curvature
@@ -26,21 +33,22 @@ impl Descent<'_> {
     ///
     /// # Errors
     /// [`Stopped`] when the observer wants to stop. Pressure and gap are then those from before the round.
-    pub(super) fn safe_round(&mut self, sums: &GapSums, observer: &dyn Observer) -> Result<GapSums, Stopped> {
-        let (pressure, gap) = (self.pressure.clone(), self.gap.clone());
+    pub(crate) fn descending_round(&mut self, sums: &GapSums, observer: &dyn Observer) -> Result<GapSums, Stopped> {
+        let before = (self.pressure.clone(), self.gap.clone());
         let zero_gap = self.zero_gap;
-        let Ok(sums) = self.round(1, sums, observer) else {
-            (self.pressure, self.gap) = (pressure, gap);
+        let Ok(after) = self.round(1, sums, observer) else {
+            (self.pressure, self.gap) = before;
             return Err(Stopped);
         };
-        let part = self.best_part(&pressure, &gap, zero_gap);
-        if part >= 1.0 {
-            return Ok(sums);
+        if !has_risen(sums, &after) {
+            self.step_factor = (LONGER * self.step_factor).min(1.0);
+            return Ok(after);
         }
+        let part = self.best_part(&before.0, &before.1, zero_gap);
         if part <= 0.0 {
             self.step_factor *= SHORTER;
         }
-        for (new, old) in [(&mut self.pressure, &pressure), (&mut self.gap, &gap)] {
+        for (new, old) in [(&mut self.pressure, &before.0), (&mut self.gap, &before.1)] {
             let len = self.layout.len();
             parallel::for_each(new.chunks_mut(len).zip(old.chunks(len)), |(new, old)| {
                 for (new, old) in new.iter_mut().zip(old) {

@@ -1,0 +1,149 @@
+//! The mean pressure under penetration control.
+//!
+//! It is free, like any other wave of the pressure.
+
+use crate::descent::operators::{read_blocks, write_blocks};
+use crate::descent::rows::{self, ElementValues};
+use crate::descent::state::Descent;
+use crate::descent::sums::GapSums;
+use crate::parallel;
+use crate::problem::control::Control;
+
+/// Part of the cell in contact from which the uniform pressure's stiffness is computed.
+///
+/// Below it, the application of L gained nothing on rough surfaces.
+const LARGE_CONTACT: f64 = 0.7;
+
+/// Limits of the change of the pressure in one step, relative to p (1 - p/H).
+pub(crate) const STEPS: [f64; 2] = [-0.5, 1.0];
+
+impl Descent<'_> {
+    /// Brings the pressure to the prescribed penetration, if one is prescribed, or nearer to it.
+    ///
+    /// It scales the pressure so that its weighted mean gap is zero, if that meets the bounds. Otherwise it moves along
+    /// p (1 - p/H) to the minimum energy.
+    ///
+    /// The exception is a solid that nothing holds, if all elements press although the penetration is below full
+    /// contact. The mean pressure is then too large, by at least the minimum pressure. Subtracting the minimum from all
+    /// pressures displaces nothing and lowers the energy. Scaling would undo the part of the pressure that already fits
+    /// the heights.
+    pub(crate) fn meet_penetration(&mut self, sums: GapSums) -> GapSums {
+        if self.problem.bounds.mean().is_some() {
+            return self.settle(sums);
+        }
+        match sums.scale_to_penetration(self.problem) {
+            None if !sums.may_scale() => self.follow_penetration(sums),
+            None => self.settle(sums),
+            Some(_) if self.problem.support.is_none() && sums.n_contact >= self.n_cell() => {
+                let less = self.too_much_everywhere();
+                parallel::update(&mut self.pressure, |p| *p -= less);
+                let sums = self.rescale(1.0);
+                self.within_bounds(sums)
+            }
+            Some(scale) => self.rescale(scale),
+        }
+    }
+
+    /// The pressure to subtract from all elements where all of them press.
+    ///
+    /// It is the minimum pressure. It is negative where the penetration is beyond full contact and the hardness limits
+    /// the pressure.
+    fn too_much_everywhere(&self) -> f64 {
+        match self.problem.bounds.control {
+            Control::Penetration(penetration) if penetration >= self.problem.h_max - self.problem.h_mean => {
+                parallel::maximum(&self.pressure, 0.0) - self.problem.bounds.hardness
+            }
+            _ => self.layout.minimum(&self.pressure),
+        }
+    }
+
+    /// Moves the pressure along d = p (1 - p/H) to the minimum energy.
+    ///
+    /// The stiffness of this direction preconditions the mean.
+    fn follow_penetration(&mut self, sums: GapSums) -> GapSums {
+        let (len, bounds) = (self.layout.len(), self.problem.bounds);
+        let (unit, range) = (self.problem.unit().recip(), self.problem.unit());
+        self.info.operator_applications += 1;
+        let corrections = &mut *self.operators.corrections;
+        write_blocks(corrections, self.pressure.chunks(len), |pressure, values| {
+            for (&p, value) in pressure.iter().zip(values) {
+                *value = (bounds.direction(p) * unit) as f32;
+            }
+        });
+        corrections.apply();
+        let kept = self.directions.displacements_mut(len);
+        let blocks = self.pressure.chunks(len).zip(self.gap.chunks(len)).zip(kept);
+        let products = read_blocks(corrections, blocks, |((pressure, gap), kept), displacement| {
+            kept.copy_from_slice(displacement);
+            rows::products(pressure, gap, displacement, |p| bounds.direction(p))
+        });
+        let [whole, with_gap, with_displacement] = self.layout.total(products);
+        let curvature = range * with_displacement;
+        let stiffness = whole * whole / (self.info.grid.len() as f64 * curvature);
+        self.knows_stiffness = curvature > 0.0 && stiffness.is_finite() && stiffness > 0.0;
+        if !self.knows_stiffness {
+            return self.settle(sums);
+        }
+        corrections.set_mean(stiffness);
+        let factor = (-with_gap / curvature).clamp(STEPS[0], STEPS[1]);
+        let (offset, empty) = (self.problem.offset(), GapSums::empty(self.pressed, bounds.hardness));
+        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        let blocks = elements.blocks(len).zip(self.directions.added().chunks(len));
+        let sums = parallel::map(blocks, |(block, displacement)| {
+            for ((p, g), u) in block.pressure.iter_mut().zip(block.gap.iter_mut()).zip(displacement) {
+                *p = bounds.along(*p, factor);
+                *g += factor * range * f64::from(*u);
+            }
+            block.rescale(1.0, offset, empty)
+        });
+        let sums = GapSums::total(&self.layout, sums);
+        self.pressed = sums.next_pressed();
+        self.settle(sums)
+    }
+
+    /// Preconditions the mean by the contact stiffness dσ0/dΔ = max ⟨x⟩²/⟨x L x⟩.
+    ///
+    /// The maximum is over pressures x on the contact, so each x gives a lower bound. The present pressure gives
+    /// σ0²/mean(p v). This stays finite towards full contact, where the true stiffness grows without bound. The bound
+    /// of a uniform pressure grows too, because the uniform pressure displaces less when less is out of contact.
+    ///
+    /// Where elements are plastic, the last step along p (1 - p/H) has found a stiffness. If nothing lies between the
+    /// bounds, it is that of a uniform pressure on the `n_active` active elements.
+    pub(crate) fn precondition_mean(&mut self, sums: &GapSums, n_active: f64) {
+        let Control::Penetration(_) = self.problem.bounds.control else { return };
+        let n_cell = self.n_cell();
+        let secant = sums.pressure * sums.pressure / (n_cell * sums.work());
+        let stiffness = match sums.has_plastic() {
+            true if self.knows_stiffness => return,
+            true => self.stiffness_of_uniform(n_active, |_, active| active),
+            false if sums.n_contact > LARGE_CONTACT * n_cell => {
+                self.stiffness_of_uniform(sums.n_contact, |p, _| p > 0.0).max(secant)
+            }
+            false => secant,
+        };
+        if stiffness.is_finite() && stiffness > 0.0 {
+            self.operators.corrections.set_mean(stiffness);
+        }
+    }
+
+    /// ⟨x⟩²/⟨x L x⟩ for x = 1 on the `n` elements that are `chosen`, and 0 elsewhere.
+    fn stiffness_of_uniform(&mut self, n: f64, chosen: impl Fn(f64, bool) -> bool + Sync) -> f64 {
+        let len = self.layout.len();
+        self.info.operator_applications += 1;
+        let corrections = &mut *self.operators.corrections;
+        let elements = || self.pressure.chunks(len).zip(self.directions.active.chunks(len));
+        write_blocks(corrections, elements(), |(pressure, active), values| {
+            for ((&p, &active), value) in pressure.iter().zip(active).zip(values) {
+                *value = if chosen(p, active) { 1.0 } else { 0.0 };
+            }
+        });
+        corrections.apply();
+        let sums = read_blocks(corrections, elements(), |(pressure, active), displacement| {
+            let of_chosen =
+                pressure.iter().zip(active).zip(displacement).filter(|((p, active), _)| chosen(**p, **active));
+            [of_chosen.map(|(_, &v)| f64::from(v)).sum()]
+        });
+        let [displaced] = self.layout.total(sums);
+        n * n / (self.n_cell() * displaced)
+    }
+}
