@@ -1,5 +1,7 @@
 //! The traits for an elastic solid or an operator of your own.
 
+use std::sync::Arc;
+
 use crate::Grid;
 
 /// Eigenvalue of an elastic operator on one grid, as a function of (|kx|, |ky|).
@@ -142,6 +144,14 @@ pub trait Kernel: Sync {
     /// images. The adaptive method is built on this split, so it works only with such a kernel.
     fn is_split_by_scale(&self) -> bool {
         false
+    }
+
+    /// A copy of the kernel that solutions keep, or `None`.
+    ///
+    /// A solution with a borrowed kernel that has to outlive the borrow keeps this copy. Without one, it computes
+    /// stiffness and displacement before the borrow ends.
+    fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {
+        None
     }
 }
 

@@ -1,5 +1,7 @@
 //! The paper's element on an infinite half-space whose surface is free beyond the heights.
 
+use std::sync::Arc;
+
 use rc_core::{DVec2, Grid, Kernel, Symbol};
 
 use crate::{Love, love_rectangle_displacement};
@@ -35,5 +37,9 @@ impl Kernel for FreeLove {
 
     fn is_split_by_scale(&self) -> bool {
         true
+    }
+
+    fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {
+        Some(Arc::new(*self))
     }
 }

@@ -1,6 +1,7 @@
 //! An elastic layer, bonded to a rigid base, in place of the half-space.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 use rc_core::{EdgeBias, Grid, Kernel, Symbol};
 
@@ -133,6 +134,10 @@ impl Kernel for LoveLayer {
     fn uniform_displacement(&self) -> Option<f64> {
         Some(self.0.uniform_displacement())
     }
+
+    fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {
+        Some(Arc::new(*self))
+    }
 }
 
 /// Aliases along one axis, nearest first. Each is a wavenumber and the mean of its wave over an element.
@@ -180,6 +185,10 @@ impl Kernel for SpectralLayer {
 
     fn uniform_displacement(&self) -> Option<f64> {
         Some(self.0.uniform_displacement())
+    }
+
+    fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {
+        Some(Arc::new(*self))
     }
 
     fn edge_bias(&self) -> EdgeBias {

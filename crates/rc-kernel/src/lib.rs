@@ -68,6 +68,8 @@ pub use spectral::Spectral;
 pub use split::{CoarseElement, CoarseFilter, Filter, ScaleSplit, SplitParams, Stencil, UnevenFilter};
 pub use truncated::{LoadForm, shells_for, truncated_coefficient, truncation_error_bound};
 
+use std::sync::Arc;
+
 use love_symbol::LoveSymbol;
 use rc_core::{Grid, Kernel, Symbol};
 
@@ -98,6 +100,10 @@ impl Kernel for Love {
 
     fn is_split_by_scale(&self) -> bool {
         true
+    }
+
+    fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {
+        Some(Arc::new(*self))
     }
 
     // `edge_bias` is the default, which is fitted to this kernel.

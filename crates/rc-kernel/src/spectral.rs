@@ -1,6 +1,7 @@
 //! The point-collocated kernel that FFT codes of this field use.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use rc_core::{EdgeBias, Grid, Kernel, Symbol};
 
@@ -27,5 +28,9 @@ impl Kernel for Spectral {
 
     fn edge_bias(&self) -> EdgeBias {
         EdgeBias { per_edge: 0.0417, per_contact: -0.32, per_deviation: -0.043, per_square: 0.014 }
+    }
+
+    fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {
+        Some(Arc::new(*self))
     }
 }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 use std::ffi::CString;
+use std::sync::Arc;
 
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyUserWarning;
@@ -26,11 +27,12 @@ const HALF_SPACE_ERROR: f64 = 0.05;
 const STACK_LEVEL: i32 = 3;
 
 /// The symbol of the caller on a grid. The waves of all coarser grids are among those of the grid.
+#[derive(Clone)]
 pub(crate) struct OwnKernel {
     /// Maximum number of waves per cell along y.
     max_ky: usize,
     /// Values in λ/E* for all kx ≥ 0 and, for each kx, all ky ≥ 0. The value of the zero wave is zero.
-    values: Vec<f64>,
+    values: Arc<[f64]>,
 }
 
 /// The waves of a grid, with the wavenumber (rad/m) of one wave per cell.
@@ -178,5 +180,9 @@ impl Kernel for OwnKernel {
             let row = self.values.chunks_exact(self.max_ky + 1).nth(kx);
             row.and_then(|row| row.get(ky)).copied().unwrap_or(f64::NAN)
         })
+    }
+
+    fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {
+        Some(Arc::new(self.clone()))
     }
 }

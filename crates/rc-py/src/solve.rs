@@ -131,8 +131,7 @@ impl Prepared {
         refuse(&problem.warnings(), is_strict, "; nothing was solved")?;
         let solved = scene.solve(problem, started, observer)?;
         let SolvedParts { solution, failure, flow, warnings, wall } = solved.into_parts();
-        let solution =
-            if own.is_some() { solution.into_owned() } else { solution.into_owned_with(scene.contact.kernel()?) };
+        let solution = solution.into_owned();
         // This is all that is kept of a map, since its heights are the caller's.
         let height_and_slope = surface.height_and_slope(scene.contact.boundary);
         let waves = surface.wave_file().cloned();

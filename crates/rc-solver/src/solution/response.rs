@@ -17,28 +17,39 @@ pub(crate) enum Response<'a> {
     Kernel(OwnedKernel<'a>),
     /// The caller's operator.
     Operator(&'a dyn Operator),
-    /// The results of an operator that the solution has outlived.
+    /// The results of a kernel or an operator that the solution has outlived.
     Outlived {
         /// dσ0/dΔ, in E*/λ.
         stiffness: f64,
         /// v = L p, in λ.
         displacement: Field,
+        /// The shift of contact edges.
+        bias: EdgeBias,
+        /// The boundary of the heights.
+        boundary: Boundary,
     },
 }
 
 impl Response<'_> {
-    /// The half-space without a borrow, for one solution.
+    /// The half-space without a borrow, for one solution with this `hardness`.
     ///
-    /// The results of an operator are computed now.
-    pub(crate) fn into_owned(self, solution: &GridSolution) -> Response<'static> {
-        match self {
-            Self::Kernel(kernel) => Response::Kernel(kernel.into_owned(solution.pressure.grid())),
-            Self::Operator(_) => Response::Outlived {
-                // Operators do not have a hardness.
-                stiffness: self.stiffness(solution, f64::INFINITY),
-                displacement: self.displacement(&solution.pressure),
+    /// The results of an operator, and of a kernel that makes no copy of itself, are computed now.
+    pub(crate) fn into_owned(self, solution: &GridSolution, hardness: f64) -> Response<'static> {
+        let shared = match &self {
+            Self::Kernel(kernel) => kernel.to_shared(),
+            Self::Operator(_) | Self::Outlived { .. } => None,
+        };
+        match (self, shared) {
+            (_, Some(kernel)) => Response::Kernel(OwnedKernel::Shared(kernel)),
+            (Self::Outlived { stiffness, displacement, bias, boundary }, _) => {
+                Response::Outlived { stiffness, displacement, bias, boundary }
+            }
+            (response, _) => Response::Outlived {
+                stiffness: response.stiffness(solution, hardness),
+                displacement: response.displacement(&solution.pressure),
+                bias: response.edge_bias(),
+                boundary: response.boundary(solution.pressure.grid()),
             },
-            Self::Outlived { stiffness, displacement } => Response::Outlived { stiffness, displacement },
         }
     }
 
@@ -46,7 +57,8 @@ impl Response<'_> {
     pub(crate) fn edge_bias(&self) -> EdgeBias {
         match self {
             Self::Kernel(kernel) => kernel.get().edge_bias(),
-            Self::Operator(_) | Self::Outlived { .. } => EdgeBias::default(),
+            Self::Operator(_) => EdgeBias::default(),
+            Self::Outlived { bias, .. } => *bias,
         }
     }
 
@@ -54,27 +66,25 @@ impl Response<'_> {
     pub(crate) fn boundary(&self, grid: Grid) -> Boundary {
         match self {
             Self::Kernel(kernel) => Support::of(kernel.get(), grid).boundary,
-            Self::Operator(_) | Self::Outlived { .. } => Boundary::Periodic,
+            Self::Operator(_) => Boundary::Periodic,
+            Self::Outlived { boundary, .. } => *boundary,
         }
     }
 
     /// Contact stiffness dσ0/dΔ of `solution`, in E*/λ.
+    ///
+    /// In full contact it is infinite, unless the solid is on a base.
     pub(crate) fn stiffness(&self, solution: &GridSolution, hardness: f64) -> f64 {
+        let is_full = solution.status == Status::FullContact;
         match self {
+            Self::Kernel(kernel) if is_full => kernel.get().uniform_displacement().unwrap_or(0.0).recip(),
             Self::Kernel(kernel) => {
                 let converged = solution.status != Status::NotConverged;
                 contact_stiffness(&solution.pressure, hardness, kernel.get(), converged)
             }
+            Self::Operator(_) if is_full => f64::INFINITY,
             Self::Operator(operator) => stiffness_with_operator(&solution.pressure, *operator),
             Self::Outlived { stiffness, .. } => *stiffness,
-        }
-    }
-
-    /// dσ0/dΔ in full contact, in E*/λ. It is infinite unless the solid is on a base.
-    pub(crate) fn full_contact_stiffness(&self) -> f64 {
-        match self {
-            Self::Kernel(kernel) => kernel.get().uniform_displacement().unwrap_or(0.0).recip(),
-            Self::Operator(_) | Self::Outlived { .. } => f64::INFINITY,
         }
     }
 

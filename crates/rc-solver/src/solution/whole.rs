@@ -1,9 +1,9 @@
 //! The result of a solve, for all methods.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 use rc_comm::Ranks;
-use rc_core::{Field, Grid, Kernel, Operator};
+use rc_core::{Field, Grid, Operator};
 
 use crate::descent::certificate::Certificate;
 use crate::descent::info::SolveInfo;
@@ -120,13 +120,13 @@ impl<'a> Solution<'a> {
 
     /// The same solution without borrows.
     ///
-    /// A solution of the adaptive method keeps a copy of a map. A solution on a grid keeps the symbol of its kernel.
-    /// With an operator, displacement and stiffness are computed now.
+    /// A solution of the adaptive method keeps a copy of a map. A solution on a grid keeps a copy of its kernel
+    /// ([`rc_core::Kernel::to_shared`]). If there is none, displacement and stiffness are computed now.
     #[must_use]
     pub fn into_owned(self) -> Solution<'static> {
         let pressures = match self.pressures {
             Pressures::Grid { solution, response } => {
-                let response = response.into_owned(&solution);
+                let response = response.into_owned(&solution, self.how.hardness);
                 Pressures::Grid { solution, response }
             }
             Pressures::Tiles { solution, problem } => {
@@ -135,34 +135,6 @@ impl<'a> Solution<'a> {
         };
         let Self { how, status, h_max, pressure, gap, plastic_gap, displacement, observables, stiffness, .. } = self;
         Solution { how, status, h_max, pressures, pressure, gap, plastic_gap, displacement, observables, stiffness }
-    }
-
-    /// The same solution without borrows, with a shared kernel.
-    ///
-    /// It keeps `kernel`, which must be the one of the solve, instead of a table of its symbol.
-    #[must_use]
-    pub fn into_owned_with(self, kernel: Arc<dyn Kernel + Send + Sync>) -> Solution<'static> {
-        match self.pressures {
-            Pressures::Grid { solution, response: Response::Kernel(OwnedKernel::Borrowed(_)) } => {
-                let pressures = Pressures::Grid { solution, response: Response::Kernel(OwnedKernel::Shared(kernel)) };
-                let Self {
-                    how, status, h_max, pressure, gap, plastic_gap, displacement, observables, stiffness, ..
-                } = self;
-                Solution {
-                    how,
-                    status,
-                    h_max,
-                    pressures,
-                    pressure,
-                    gap,
-                    plastic_gap,
-                    displacement,
-                    observables,
-                    stiffness,
-                }
-            }
-            pressures => Self { pressures, ..self }.into_owned(),
-        }
     }
 
     /// How the solve ended.
@@ -264,7 +236,6 @@ impl<'a> Solution<'a> {
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         *self.stiffness.get_or_init(|| match &self.pressures {
-            Pressures::Grid { response, .. } if self.status == Status::FullContact => response.full_contact_stiffness(),
             Pressures::Grid { solution, response } => response.stiffness(solution, self.how.hardness),
             Pressures::Tiles { solution, problem } => problem.contact_stiffness(solution),
         })
