@@ -71,6 +71,7 @@ mod grid;
 mod heights;
 mod histogram;
 mod progress;
+mod split;
 mod traits;
 mod units;
 
@@ -85,5 +86,6 @@ pub use grid::{Grid, GridError};
 pub use heights::{HeightField, HeightSource};
 pub use histogram::Histogram;
 pub use progress::{Event, Observer, Rows, Silent, Snapshot};
+pub use split::SplitByScale;
 pub use traits::{Boundary, EdgeBias, Kernel, Operator, Symbol};
 pub use units::{Elasticity, PeriodicCell, UnitError, Units};

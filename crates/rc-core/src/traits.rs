@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::Grid;
+use crate::grid::Grid;
+use crate::split::SplitByScale;
 
 /// Eigenvalue of an elastic operator on one grid, as a function of (|kx|, |ky|).
 ///
@@ -91,8 +92,7 @@ impl Default for EdgeBias {
 ///
 /// The check does not notice a valid symbol of the wrong solid: with a wrong factor, a wrong thickness or smooth noise.
 /// Compare with a known displacement. A fault at a single wave that was not evaluated is noticed only if the value is
-/// NaN or infinite, because the solve then does not converge. Kernels with [`Kernel::is_split_by_scale`] are not
-/// checked.
+/// NaN or infinite, because the solve then does not converge. The adaptive method also checks [`Kernel::split`].
 pub trait Kernel: Sync {
     /// Short name, as used in result files.
     fn name(&self) -> &'static str;
@@ -137,13 +137,14 @@ pub trait Kernel: Sync {
         EdgeBias::default()
     }
 
-    /// Whether `rc_kernel::ScaleSplit` computes the displacements of this kernel.
+    /// The split of the displacements by scale, which the adaptive method needs.
     ///
-    /// `ScaleSplit` splits the displacements of the half-space by scale, for pressures that are constant on each
-    /// element. The elements are those of a periodic cell or, with [`Kernel::free_response`], those of a patch without
-    /// images. The adaptive method is built on this split, so it works only with such a kernel.
-    fn is_split_by_scale(&self) -> bool {
-        false
+    /// `None` means that the kernel is solved on the uniform grid. A kernel of an isotropic solid has a split if its
+    /// elements are Love's squares and short waves see the half-space. Such a kernel can return the split of
+    /// `rc_kernel::Love`, or an object of its own. A kernel with a [`Kernel::uniform_displacement`] is always solved on
+    /// the uniform grid.
+    fn split(&self) -> Option<&dyn SplitByScale> {
+        None
     }
 
     /// A copy of the kernel that solutions keep, or `None`.

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use rc_core::{DVec2, Grid, Kernel, Symbol};
+use rc_core::{DVec2, Grid, Kernel, SplitByScale, Symbol};
 
+use crate::half_space::HalfSpace;
 use crate::{Love, love_rectangle_displacement};
 
 /// [`Love`] without periodic images.
@@ -35,8 +36,8 @@ impl Kernel for FreeLove {
         }))
     }
 
-    fn is_split_by_scale(&self) -> bool {
-        true
+    fn split(&self) -> Option<&dyn SplitByScale> {
+        Some(&HalfSpace)
     }
 
     fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {

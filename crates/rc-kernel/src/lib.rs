@@ -15,6 +15,7 @@
 //! | [`ewald_phi`], [`ewald_coefficient`] | the point load and the square by Ewald's sum: the slow reference for [`PeriodicLove`] | `lattice.rs` |
 //! | [`truncated_coefficient`] | Eq. 4-6 as in the paper, with images up to K shells, and a proven bound on the truncation error | `truncated.rs` |
 //! | [`ScaleSplit`] | Eq. 4-6 split by scale, for meshes of many levels: short-range stencils, filters between levels, a smooth remainder | `split/` |
+//! | [`HalfSpace`] | the split of [`Love`] and [`FreeLove`] ([`rc_core::SplitByScale`]) | `half_space.rs` |
 //! | [`Spectral`] | Eq. 2-3 for each Fourier wave: the symbol of the continuous half-space, without aliases | `spectral.rs` |
 //! | [`FreeLove`] | Eq. 4-5 on an infinite half-space, without images | `free_love.rs`, rectangles in `love.rs` |
 //! | [`LoveLayer`], [`SpectralLayer`] | [`Love`] and [`Spectral`] for a layer on a rigid base ([`Layer`]) | `layer.rs` |
@@ -42,6 +43,7 @@ mod chebyshev;
 mod error;
 mod free_love;
 mod gauss_legendre;
+mod half_space;
 mod lattice;
 mod layer;
 mod love;
@@ -58,6 +60,7 @@ pub use alias_sum::love_alias_sum;
 pub use bessel::bessel_series;
 pub use error::KernelError;
 pub use free_love::FreeLove;
+pub use half_space::HalfSpace;
 pub use lattice::{LATTICE_CONSTANT, ewald_coefficient, ewald_phi};
 
 pub use layer::{Layer, LoveLayer, SpectralLayer, THINNEST_LAYER};
@@ -71,7 +74,7 @@ pub use truncated::{LoadForm, shells_for, truncated_coefficient, truncation_erro
 use std::sync::Arc;
 
 use love_symbol::LoveSymbol;
-use rc_core::{Grid, Kernel, Symbol};
+use rc_core::{Grid, Kernel, SplitByScale, Symbol};
 
 /// The kernel of the paper's elements.
 ///
@@ -98,8 +101,8 @@ impl Kernel for Love {
         Box::new(move |kx, ky| symbol.eigenvalue(kx, ky))
     }
 
-    fn is_split_by_scale(&self) -> bool {
-        true
+    fn split(&self) -> Option<&dyn SplitByScale> {
+        Some(&HalfSpace)
     }
 
     fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {

@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use rc_comm::Ranks;
-use rc_core::{Boundary, Grid, Observer};
+use rc_core::{Boundary, EdgeBias, Grid, Kernel, Observer};
 use rc_quadtree::TILE;
 
 use crate::levels::agreed_stop::AgreedStop;
@@ -20,8 +20,7 @@ use crate::levels::level::SolvedLevel;
 use crate::levels::nested_iteration::{NestedIteration, NestedSolution};
 use crate::levels::operator_error::{PressureScale, can_certify, certifying_split};
 use crate::levels::params::AdaptiveParams;
-use crate::levels::setup::Place;
-use crate::levels::setup::Splits;
+use crate::levels::setup::{Given, Place, Splits};
 use crate::problem::adaptive_error::AdaptiveError;
 use crate::problem::bounds::Bounds;
 use crate::problem::checked::Problem;
@@ -41,8 +40,7 @@ use crate::tiles::split::GapSplit;
 
 /// A checked contact problem, ready for the adaptive method.
 ///
-/// Heights are sampled, but nothing is solved. Displacements are those of Love's squares ([`rc_kernel::Love`]) of the
-/// finest side.
+/// Heights are sampled, but nothing is solved. Displacements are those of the kernel's [`rc_core::Kernel::split`].
 pub(crate) struct AdaptiveProblem<'a> {
     pub(crate) ground: Arc<Ground<'a>>,
     pub(crate) problem: Problem,
@@ -83,7 +81,8 @@ impl<'a> AdaptiveProblem<'a> {
         control: Control,
         params: &AdaptiveParams,
     ) -> Result<Self, AdaptiveError> {
-        Self::on(&Arc::new(Ground::new(source, Boundary::Periodic, params)?), control.into(), params, &Place::default())
+        let ground = Ground::new(source, &rc_kernel::Love, &rc_kernel::HalfSpace, params)?;
+        Self::on(&Arc::new(ground), control.into(), params, &Place::default())
     }
 
     /// The problem of one load, solved in this place.
@@ -159,11 +158,13 @@ impl<'a> AdaptiveProblem<'a> {
     /// The certificate comes from a fresh application of L on the returned pressure, plus bounds on the error of that
     /// operator. It covers every cell where a bound does not exclude contact. The result is bitwise the same for any
     /// number of threads.
-    pub(crate) fn solve(&self, observer: &dyn Observer) -> AdaptiveSolution {
+    ///
+    /// The `kernel` is the one that the ground was made with.
+    pub(crate) fn solve(&self, kernel: &dyn Kernel, observer: &dyn Observer) -> AdaptiveSolution {
         let observer = &AgreedStop { observer, ranks: &self.place.ranks };
-        let solver = self.first_solver();
+        let solver = self.first_solver(kernel);
         let start = solver.prepare(solver.begin(observer), observer);
-        self.finish(self.solve_levels(&solver, start, observer))
+        self.finish(self.solve_levels(&solver, start, observer), kernel.edge_bias())
     }
 
     /// Solves the problem, unless the uniform grid is better.
@@ -172,9 +173,13 @@ impl<'a> AdaptiveProblem<'a> {
     ///
     /// # Errors
     /// [`Unsuitable`].
-    pub(crate) fn solve_if_suitable(&self, observer: &dyn Observer) -> Result<AdaptiveSolution, Unsuitable> {
+    pub(crate) fn solve_if_suitable(
+        &self,
+        kernel: &dyn Kernel,
+        observer: &dyn Observer,
+    ) -> Result<AdaptiveSolution, Unsuitable> {
         let observer = &AgreedStop { observer, ranks: &self.place.ranks };
-        let solver = self.first_solver();
+        let solver = self.first_solver(kernel);
         let base = solver.begin(observer);
         if base.tile_fraction > Estimate::GREATEST_TILE_FRACTION {
             return Err(Unsuitable::Scattered { tile_fraction: base.tile_fraction });
@@ -183,11 +188,11 @@ impl<'a> AdaptiveProblem<'a> {
         if !can_certify(&solver.scale(&start), self.params.solve.bound, &self.problem) {
             return Err(Unsuitable::Rough);
         }
-        Ok(self.finish(self.solve_levels(&solver, start, observer)))
+        Ok(self.finish(self.solve_levels(&solver, start, observer), kernel.edge_bias()))
     }
 
-    pub(crate) fn first_solver(&self) -> NestedIteration<'_> {
-        self.solver(Splits { fresh: self.split, certified: self.split })
+    pub(crate) fn first_solver<'s>(&'s self, kernel: &'s dyn Kernel) -> NestedIteration<'s> {
+        self.solver(kernel, Splits { fresh: self.split, certified: self.split })
     }
 
     /// Solves the finest level, with operators that are as accurate as the bound needs.
@@ -197,12 +202,12 @@ impl<'a> AdaptiveProblem<'a> {
         start: LevelStart,
         observer: &dyn Observer,
     ) -> NestedSolution {
-        let first = solver.splits();
+        let (first, kernel) = (solver.splits(), solver.kernel());
         let certified = self.certifying_split(first.certified, &solver.scale(&start));
         let solved = if certified == first.certified {
             solver.finish(start, observer)
         } else {
-            self.solver(Splits { certified, ..first }).take_over(start, observer)
+            self.solver(kernel, Splits { certified, ..first }).take_over(start, observer)
         };
         let certificate = solved.level.outcome.certificate;
         let better = self.certifying_split(solved.splits.certified, &solved.scale);
@@ -212,11 +217,12 @@ impl<'a> AdaptiveProblem<'a> {
             return solved;
         }
         let splits = Splits { certified: better, ..solved.splits };
-        self.solver(splits).improve(solved, observer)
+        self.solver(kernel, splits).improve(solved, observer)
     }
 
-    fn solver(&self, splits: Splits) -> NestedIteration<'_> {
-        NestedIteration::new((&self.ground, &self.place), self.problem, &self.params, splits)
+    fn solver<'s>(&'s self, kernel: &'s dyn Kernel, splits: Splits) -> NestedIteration<'s> {
+        let given = Given { ground: &self.ground, place: &self.place, kernel };
+        NestedIteration::new(given, self.problem, &self.params, splits)
     }
 
     /// The first split, from `split` on, that can certify a pressure of this scale.
@@ -225,11 +231,11 @@ impl<'a> AdaptiveProblem<'a> {
     }
 
     /// Makes the solution from the results of the levels.
-    fn finish(&self, solved: NestedSolution) -> AdaptiveSolution {
+    fn finish(&self, solved: NestedSolution, bias: EdgeBias) -> AdaptiveSolution {
         let NestedSolution { grid, level, levels, coarser, .. } = solved;
         let SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, .. } = level;
         let (contact_gap, hardness) = (outcome.contact_gap, self.problem.bounds.hardness);
-        let values = Values { mesh: &elements, pressure: &pressure, gap: &gap, contact_gap, hardness };
+        let values = Values { mesh: &elements, pressure: &pressure, gap: &gap, contact_gap, hardness, bias };
         let (area, plastic) = (values.contact_area(grid), values.plastic_edges(grid));
         let mut info = outcome.info(&self.problem, levels, coarser);
         if self.problem.support.boundary == Boundary::Free {

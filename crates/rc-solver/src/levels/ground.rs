@@ -2,17 +2,20 @@
 
 use std::sync::Arc;
 
-use rc_core::{Boundary, HeightSource};
+use rc_core::{Boundary, HeightSource, Kernel, SplitByScale};
 
 use crate::levels::base_grid::base_sides;
 use crate::levels::checks::{check_elements, check_memory, first_split, with_border_level};
 use crate::levels::kernels::Kernels;
 use crate::levels::params::AdaptiveParams;
+use crate::levels::split::check_split;
 use crate::problem::adaptive_error::AdaptiveError;
+use crate::problem::support::Support;
 use crate::tiles::base::Base;
 use crate::tiles::heights::on_demand::Heights;
 use crate::tiles::ladder::Ladder;
 use crate::tiles::memory::base_bytes;
+use crate::tiles::solid::Solid;
 
 /// Heights with their bounds, and the split kernels of the base grid.
 pub(crate) struct Ground<'a> {
@@ -23,27 +26,31 @@ pub(crate) struct Ground<'a> {
 }
 
 impl<'a> Ground<'a> {
-    /// Samples the heights. Kernels are made when they are needed.
+    /// Checks the `split` of the `kernel`, and samples the heights. Tables are made when they are needed.
     ///
     /// # Errors
     /// [`AdaptiveError`].
     pub(crate) fn new(
         source: HeightSource<'a>,
-        boundary: Boundary,
+        kernel: &dyn Kernel,
+        split: &dyn SplitByScale,
         params: &AdaptiveParams,
     ) -> Result<Self, AdaptiveError> {
         let grid = source.grid();
+        let boundary = Support::of(kernel, grid).boundary;
         check_elements(grid)?;
         // This check comes before any work.
         first_split(params)?;
         let base = base_sides(&source, params.base_side, boundary)?;
         let source = with_border_level(source, params.border_level)?;
         let ladder = Ladder::new(base, source.grid());
+        let solid = Solid::new(kernel, split, Base::new(ladder, boundary))?;
+        check_split(kernel, split, grid)?;
         if params.border_level > 0 && !ladder.is_even() {
             return Err(AdaptiveError::BorderOfGrid { grid });
         }
         let sampled_bytes = Heights::sampled_bytes(&source, ladder);
-        let kernels = Kernels::new(Base::new(ladder, boundary), params.border_level);
+        let kernels = Kernels::new(solid, params.border_level);
         check_memory(grid, params.memory_limit, base_bytes(kernels.base().period()) + sampled_bytes, None)?;
         let heights = Heights::with_borders(source, base, boundary)?;
         Ok(Self { heights, kernels, sampled_bytes })

@@ -15,4 +15,5 @@ pub(crate) mod nested_iteration;
 pub(crate) mod operator_error;
 pub(crate) mod params;
 pub(crate) mod setup;
+pub(crate) mod split;
 pub(crate) mod uniform;

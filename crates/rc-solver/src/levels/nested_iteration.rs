@@ -4,19 +4,17 @@
 
 use rayon::prelude::*;
 use rc_core::{Boundary, Event, Grid, Kernel, Observer};
-use rc_kernel::{FreeLove, Love};
 use rc_quadtree::{TILE, TileSet};
 
 use crate::descent::info::{LevelInfo, LevelValues};
 use crate::grid::prolongation::edge_function;
 use crate::levels::checkpoint::{LevelStart, keep, kept};
 use crate::levels::finest_level::solve_finest_level;
-use crate::levels::ground::Ground;
 use crate::levels::level::{SolvedLevel, add_work, solve_coarse_level};
 use crate::levels::nested_grids::{FinestGrid, NestedGrids};
 use crate::levels::operator_error::PressureScale;
 use crate::levels::params::AdaptiveParams;
-use crate::levels::setup::{Place, Setup, Splits};
+use crate::levels::setup::{Given, Setup, Splits};
 use crate::problem::checked::Problem;
 use crate::tiles::ladder::{Ladder, sides_of};
 use crate::tiles::prolongation;
@@ -54,13 +52,13 @@ pub(crate) struct NestedIteration<'a> {
 }
 
 impl<'a> NestedIteration<'a> {
-    pub(crate) fn new(
-        ground: (&'a Ground<'_>, &'a Place),
-        problem: Problem,
-        params: &AdaptiveParams,
-        splits: Splits,
-    ) -> Self {
-        Self { setup: Setup::new(ground, problem, params, splits), splits }
+    pub(crate) fn new(given: Given<'a>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
+        Self { setup: Setup::new(given, problem, params, splits), splits }
+    }
+
+    /// The kernel of the problem.
+    pub(crate) fn kernel(&self) -> &'a dyn Kernel {
+        self.setup.kernel
     }
 
     /// The splits of the operators.
@@ -149,11 +147,7 @@ impl<'a> NestedIteration<'a> {
     fn solve_base(&self, n_above: usize, observer: &dyn Observer) -> BaseStart {
         let Setup { heights, problem, params, .. } = &self.setup;
         let base = heights.base();
-        let kernel: &dyn Kernel = match self.boundary() {
-            Boundary::Periodic => &Love,
-            Boundary::Free => &FreeLove,
-        };
-        let grids = NestedGrids { kernel, problem, params: *params, n_above, observer };
+        let grids = NestedGrids { kernel: self.setup.kernel, problem, params: *params, n_above, observer };
         let FinestGrid { descent, outcome, levels, coarser } = grids.solve(base);
         let function = edge_function(&descent);
         let tile_fraction = tile_fraction(base.grid(), &function, (TILE >> n_above).max(1));

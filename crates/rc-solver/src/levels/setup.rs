@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use rc_comm::Ranks;
-use rc_core::Grid;
+use rc_core::{Grid, Kernel};
 use rc_quadtree::{ContactFields, Elements, RING, divide};
 
 use crate::descent::load::mean_pressure;
@@ -44,8 +44,18 @@ pub(crate) struct Place {
     pub(crate) checkpoint: Option<Arc<dyn Checkpoint>>,
 }
 
+/// What a problem is solved with, whatever its load.
+#[derive(Clone, Copy)]
+pub(crate) struct Given<'a> {
+    pub(crate) ground: &'a Ground<'a>,
+    pub(crate) place: &'a Place,
+    /// The kernel whose split the ground has.
+    pub(crate) kernel: &'a dyn Kernel,
+}
+
 /// Heights, load and operators of a problem.
 pub(crate) struct Setup<'a> {
+    pub(crate) kernel: &'a dyn Kernel,
     pub(crate) heights: &'a Heights<'a>,
     base: Base,
     pub(crate) problem: Problem,
@@ -65,15 +75,11 @@ pub(crate) struct Setup<'a> {
 }
 
 impl<'a> Setup<'a> {
-    pub(crate) fn new(
-        (ground, place): (&'a Ground<'_>, &'a Place),
-        problem: Problem,
-        params: &AdaptiveParams,
-        splits: Splits,
-    ) -> Self {
-        let Ground { heights, kernels, .. } = ground;
+    pub(crate) fn new(given: Given<'a>, problem: Problem, params: &AdaptiveParams, splits: Splits) -> Self {
+        let Given { ground: Ground { heights, kernels, .. }, place, kernel } = given;
         let Splits { fresh, certified } = splits;
         Self {
+            kernel,
             quick: kernels.quick(),
             preconditioner: kernels.preconditioner(),
             fresh: kernels.gap(fresh),

@@ -33,6 +33,18 @@ pub enum AdaptiveError {
         /// Number of elements along the longer side below which no grid has one.
         smallest: usize,
     },
+    /// The base grid does not resolve the waves at which the solid differs from the half-space.
+    #[error(
+        "the kernel {kernel} deviates from the half-space up to a wavenumber of {} rad/λ, but the base grid of the adaptive method resolves deviations up to {} (0 with free borders)", digits(*deviates_below, 3), digits(*resolved, 3)
+    )]
+    Deviation {
+        /// Name of the kernel.
+        kernel: &'static str,
+        /// The angular wavenumber up to which it deviates, in rad/λ ([`rc_core::SplitByScale::deviates_below`]).
+        deviates_below: f64,
+        /// The angular wavenumber up to which the base grid resolves deviations, in rad/λ.
+        resolved: f64,
+    },
     /// The base grid cannot hold the surface's spectrum, or does not divide the finest grid.
     #[error(
         "a base grid of {base} elements per side does not fit {waves} waves and {finest} elements per side: it must be a multiple of 8, more than twice the waves, and the finest grid 2^k times it"

@@ -16,7 +16,7 @@ const LONG_WAVES: usize = 4;
 ///
 /// At least [`FEWEST_WAVES`] are checked.
 const WAVES_PER_LOOK: usize = 64;
-const FEWEST_WAVES: usize = 512;
+pub(crate) const FEWEST_WAVES: usize = 512;
 
 /// Relative difference that quadrature may leave between the eigenvalues of two mirrored waves.
 const MIRROR_ERROR: f64 = 1e-8;
@@ -29,11 +29,7 @@ const ROUNDING: f64 = 1e-12;
 /// The symbol must be finite, zero at the zero wave and positive elsewhere. It must be symmetric in kx and ky on a
 /// square grid, and the same each time it is evaluated. All waves of small grids are checked, and a sample
 /// on large grids.
-/// A kernel that says it is Love's half-space is not checked.
 pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), ProblemError> {
-    if kernel.is_split_by_scale() {
-        return Ok(());
-    }
     let (symbol, again) = (kernel.symbol(grid), kernel.symbol(grid));
     let fault =
         |kx, ky, value, wanted| Err(ProblemError::Symbol { kernel: kernel.name(), grid, kx, ky, value, wanted });
@@ -51,7 +47,8 @@ pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), Proble
     {
         return fault(0, 0, value, "zero or positive, and finite, for a solid on a base");
     }
-    for (kx, ky) in waves(grid) {
+    let waves = [grid.nx() / 2 + 1, grid.ny() / 2 + 1];
+    for (kx, ky) in places(waves, FEWEST_WAVES.max(waves[0] * waves[1] / WAVES_PER_LOOK)) {
         let value = symbol(kx, ky);
         match (kx, ky) {
             (0, 0) if value != 0.0 => return fault(kx, ky, value, "zero, since a uniform pressure displaces nothing"),
@@ -71,11 +68,10 @@ pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), Proble
     Ok(())
 }
 
-/// The waves that are checked: the longest, the shortest, and some between them.
-fn waves(grid: Grid) -> impl Iterator<Item = (usize, usize)> {
-    let (columns, rows) = (grid.nx() / 2 + 1, grid.ny() / 2 + 1);
+/// The waves or distances that are checked: the first, the last, and `looks` of all.
+pub(crate) fn places([columns, rows]: [usize; 2], looks: usize) -> impl Iterator<Item = (usize, usize)> {
     let (n, long) = (columns * rows, [columns.min(LONG_WAVES), rows.min(LONG_WAVES)]);
-    let looks = n.min(FEWEST_WAVES.max(n / WAVES_PER_LOOK));
+    let looks = n.min(looks);
     let long_waves = (0..long[0] * long[1]).map(move |i| (i % long[0], i / long[0]));
     let shortest = [(columns - 1, 0), (0, rows - 1), (columns - 1, rows - 1)];
     // With as many looks as waves, every wave is checked once.

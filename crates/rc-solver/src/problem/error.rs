@@ -36,6 +36,28 @@ pub enum ProblemError {
         /// The condition that the eigenvalue must meet.
         wanted: &'static str,
     },
+    /// A kernel hands over the split of another solid ([`rc_core::Kernel::split`]).
+    #[error(
+        "the split of the kernel {kernel} gives the {what} {value} at ({kx}, {ky}) of {grid} elements; it must be {wanted}{relation}"
+    )]
+    Split {
+        /// Name of the kernel.
+        kernel: &'static str,
+        /// The grid.
+        grid: Grid,
+        /// The quantity that was compared.
+        what: &'static str,
+        /// Wavenumber along x. With free borders, it is a distance in elements.
+        kx: usize,
+        /// Wavenumber or distance along y.
+        ky: usize,
+        /// The value by the split.
+        value: f64,
+        /// The value by the kernel, or a bound.
+        wanted: f64,
+        /// How the value must be related to the wanted one.
+        relation: &'static str,
+    },
     /// A height is NaN or infinite.
     #[error("height at element ({ix}, {iy}) is {value}; heights must be finite")]
     Height {

@@ -78,6 +78,11 @@ pub enum MethodReason {
         /// Name of the kernel.
         kernel: &'static str,
     },
+    /// The base grid of the adaptive method is too coarse for the waves at which the solid is not a half-space.
+    DeviationNotResolved {
+        /// Name of the kernel.
+        kernel: &'static str,
+    },
     /// The adaptive method solves the half-space, not a layer.
     Layer,
     /// The adaptive method needs square elements.
@@ -126,6 +131,12 @@ impl fmt::Display for MethodReason {
             Self::AdaptiveDoesNotFit => write!(f, "uniform: the adaptive method does not fit into memory"),
             Self::OwnOperator => write!(f, "uniform: the operator is the caller's"),
             Self::NoSplitOfKernel { kernel } => write!(f, "uniform: the kernel {kernel} has no adaptive form"),
+            Self::DeviationNotResolved { kernel } => {
+                write!(
+                    f,
+                    "uniform: the base grid of the adaptive method is too coarse for the solid of the kernel {kernel}"
+                )
+            }
             Self::Layer => write!(f, "uniform: a layer has no adaptive form"),
             Self::ElementsNotSquare { grid } => write!(f, "uniform: the elements of the grid {grid} are not square"),
             Self::NoLevels { grid } => {

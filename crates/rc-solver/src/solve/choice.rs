@@ -4,11 +4,12 @@
 
 use std::sync::Arc;
 
-use rc_core::{Boundary, Grid, HeightField, HeightSource};
+use rc_core::{Boundary, Grid, HeightField, HeightSource, SplitByScale};
 
 use crate::grid::response::padded_side;
 use crate::levels::adaptive::AdaptiveProblem;
 use crate::levels::estimate::Estimate;
+use crate::levels::split::check_split;
 use crate::problem::adaptive_error::AdaptiveError;
 use crate::problem::checked::{check_load, check_tolerance};
 use crate::problem::contact_problem::ContactProblem;
@@ -42,7 +43,10 @@ pub(super) fn plan<'a>(
         Some(method) => {
             choice.check_asked_for(method)?;
             let chosen = match method {
-                Method::Adaptive => ChosenMethod::Adaptive(Box::new(choice.prepare()?)),
+                Method::Adaptive => {
+                    let split = choice.split().ok_or_else(|| choice.not_the_half_space(method))?;
+                    ChosenMethod::Adaptive(Box::new(choice.prepare(split)?))
+                }
                 Method::Uniform | Method::GaussSeidel => choice.on_grid(method)?,
             };
             Ok((chosen, MethodReason::AskedFor(method)))
@@ -66,30 +70,41 @@ type Chosen<'a> = Result<(ChosenMethod<'a>, MethodReason), SolveError>;
 impl<'a> Choice<'a, '_> {
     /// Refuses a method that cannot solve with this kernel, border level, hardness or boundary.
     fn check_asked_for(&self, method: Method) -> Result<(), SolveError> {
-        let kernel = self.problem.kernel.get();
         match method {
             Method::GaussSeidel if self.problem.hardness.is_finite() => Err(SolveError::Hardness { method }),
             Method::GaussSeidel if self.is_free() => Err(SolveError::FreeBorders { method }),
-            Method::Adaptive | Method::GaussSeidel if !kernel.is_split_by_scale() => {
-                Err(self.not_the_half_space(method))
-            }
-            Method::Uniform | Method::GaussSeidel if self.params.border_level > 0 => {
-                Err(SolveError::BorderLevel { method })
-            }
-            _ => Ok(()),
+            Method::GaussSeidel => self.check_half_space(method).and_then(|()| self.check_border(method)),
+            Method::Uniform => self.check_border(method),
+            Method::Adaptive => Ok(()),
         }
     }
 
-    fn automatic(&self) -> Chosen<'a> {
+    fn check_border(&self, method: Method) -> Result<(), SolveError> {
+        if self.params.border_level > 0 { Err(SolveError::BorderLevel { method }) } else { Ok(()) }
+    }
+
+    /// Refuses a kernel that is not that of Love's squares on the half-space.
+    fn check_half_space(&self, method: Method) -> Result<(), SolveError> {
+        let split = self.split().filter(|split| split.deviates_below(0.0) == 0.0);
+        let split = split.ok_or_else(|| self.not_the_half_space(method))?;
+        Ok(check_split(self.problem.kernel.get(), split, self.problem.heights.grid())?)
+    }
+
+    /// The split of the kernel. `None` for a solid on a base, which the adaptive method does not solve.
+    fn split(&self) -> Option<&dyn SplitByScale> {
         let kernel = self.problem.kernel.get();
+        kernel.split().filter(|_| kernel.uniform_displacement().is_none())
+    }
+
+    fn automatic(&self) -> Chosen<'a> {
         let has_border = self.params.border_level > 0;
-        if !kernel.is_split_by_scale() {
+        let Some(split) = self.split() else {
             if has_border {
                 return Err(self.not_the_half_space(Method::Adaptive));
             }
             return Ok((self.on_grid(Method::Uniform)?, self.without_split()));
-        }
-        let adaptive = match self.prepare() {
+        };
+        let adaptive = match self.prepare(split) {
             Ok(adaptive) => adaptive,
             Err(error) if has_border => return Err(error.into()),
             Err(error) => return self.without_adaptive(error),
@@ -138,9 +153,9 @@ impl<'a> Choice<'a, '_> {
     }
 
     /// Prepares the adaptive method, if it fits the problem and the memory.
-    fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
-        let params = self.params.adaptive(self.bound);
-        let ground = self.shared.ground(&self.problem.heights, self.boundary(), &params)?;
+    fn prepare(&self, split: &dyn SplitByScale) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
+        let (params, kernel) = (self.params.adaptive(self.bound), self.problem.kernel.get());
+        let ground = self.shared.ground(&self.problem.heights, kernel, split, &params)?;
         AdaptiveProblem::on(ground, self.problem.bounds(), &params, &self.problem.place)
     }
 
@@ -171,6 +186,7 @@ impl<'a> Choice<'a, '_> {
             },
             AdaptiveError::Elements { .. } => Some(MethodReason::ElementsNotSquare { grid }),
             AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => Some(MethodReason::NoLevels { grid }),
+            AdaptiveError::Deviation { kernel, .. } => Some(MethodReason::DeviationNotResolved { kernel }),
             AdaptiveError::Flat => Some(MethodReason::Flat),
             AdaptiveError::OperatorError { .. } => {
                 Some(MethodReason::ToleranceTooSmall { tolerance: self.bound.value() })

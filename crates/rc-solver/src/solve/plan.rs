@@ -117,14 +117,14 @@ fn by_adaptive(
     (adaptive, reason): (&AdaptiveProblem<'_>, &MethodReason),
     observer: &dyn Observer,
 ) -> Result<Result<AdaptiveSolution, MethodReason>, SolveError> {
-    let bytes = bytes_per_element(problem.boundary());
+    let (bytes, kernel) = (bytes_per_element(problem.boundary()), problem.kernel.get());
     let uniform_fits = check_uniform(problem.heights.grid(), bytes, params.memory_limit, Method::Uniform);
     let may_change = matches!(reason, MethodReason::SmallContact { .. });
     // If the method may not follow memory, a load is solved in the same way on every machine, or refused.
     if !may_change || uniform_fits.is_err() && params.method_follows_memory {
-        return Ok(Ok(adaptive.solve(observer)));
+        return Ok(Ok(adaptive.solve(kernel, observer)));
     }
-    let unsuitable = match adaptive.solve_if_suitable(observer) {
+    let unsuitable = match adaptive.solve_if_suitable(kernel, observer) {
         Ok(solution) => return Ok(Ok(solution)),
         Err(unsuitable) => unsuitable,
     };

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use rc_core::{Boundary, Field, HeightSource};
+use rc_core::{Field, HeightSource, Kernel, SplitByScale};
 
 use crate::levels::ground::Ground;
 use crate::levels::params::AdaptiveParams;
@@ -19,15 +19,16 @@ pub(crate) struct Shared<'a> {
 }
 
 impl<'a> Shared<'a> {
-    /// The heights of `source` as the adaptive method needs them, with this boundary.
+    /// The heights of `source` as the adaptive method needs them, on the solid of `kernel` with its `split`.
     pub(crate) fn ground(
         &self,
         source: &HeightSource<'a>,
-        boundary: Boundary,
+        kernel: &dyn Kernel,
+        split: &dyn SplitByScale,
         params: &AdaptiveParams,
     ) -> Result<&Arc<Ground<'a>>, AdaptiveError> {
         if self.ground.get().is_none() {
-            let ground = Arc::new(Ground::new(source.clone(), boundary, params)?);
+            let ground = Arc::new(Ground::new(source.clone(), kernel, split, params)?);
             // Another load may have been faster. Its ground is the same.
             let _ = self.ground.set(ground);
         }

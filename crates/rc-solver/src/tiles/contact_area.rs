@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use rc_core::{Boundary, Grid, Kernel};
-use rc_kernel::Love;
+use rc_core::{Boundary, EdgeBias, Grid};
 use rc_quadtree::{BLOCK_CELLS, CELLS, TILE, TileSet};
 
 use crate::solution::contact_area::area::ContactArea;
@@ -27,17 +26,19 @@ pub(crate) struct Values<'a> {
     pub(crate) contact_gap: f64,
     /// The maximum pressure.
     pub(crate) hardness: f64,
+    /// The shift of contact edges.
+    pub(crate) bias: EdgeBias,
 }
 
 impl Values<'_> {
     /// The contact area, where the smallest elements are those of `finest`.
     pub(crate) fn contact_area(&self, finest: Grid) -> ContactArea {
-        ContactArea::from_sums(&self.edge_sums(|at| at), finest, Love.edge_bias())
+        ContactArea::from_sums(&self.edge_sums(|at| at), finest, self.bias)
     }
 
     /// The plastic part of the contact. `None` without a hardness.
     pub(crate) fn plastic_edges(&self, finest: Grid) -> Option<PlasticEdges> {
-        let Self { mesh, pressure, gap, contact_gap, hardness } = *self;
+        let Self { mesh, pressure, gap, contact_gap, hardness, bias } = *self;
         if hardness.is_infinite() {
             return None;
         }
@@ -55,7 +56,7 @@ impl Values<'_> {
             [pairs.map(|(_, g)| (contact_gap - g).max(0.0)).sum()]
         });
         let [flow] = mesh.layout().total(blocks.collect());
-        Some(PlasticEdges::from_sums(&sums, finest, Love.edge_bias(), flow / finest.len() as f64))
+        Some(PlasticEdges::from_sums(&sums, finest, bias, flow / finest.len() as f64))
     }
 
     /// Sums over the elements of each size. `seen` changes pressure and gap before they are summed.

@@ -6,11 +6,11 @@ use rc_core::Grid;
 use rc_kernel::ScaleSplit;
 
 use crate::descent::operators::BlockOperator;
-use crate::tiles::base::Base;
 use crate::tiles::operator::hierarchy::{Hierarchy, Reach};
 use crate::tiles::operator::sizes::Real;
 use crate::tiles::operator::tables::{Prepared, Tables};
 use crate::tiles::scaled_operator::ScaledOperator;
+use crate::tiles::solid::Solid;
 use crate::tiles::split::GapSplit;
 
 /// L on the elements of one mesh, with the smooth part of its displacement.
@@ -43,12 +43,12 @@ pub(crate) enum GapTables {
 
 impl PreparedGap {
     /// The split kernel for elements up to 2^`n_coarse` times as large as the smallest.
-    pub(crate) fn new(split: GapSplit, base: impl Into<Base>, n_coarse: usize) -> Self {
-        let (kernel, base) = (ScaleSplit::new(split.params), base.into());
+    pub(crate) fn new(split: GapSplit, solid: impl Into<Solid>, n_coarse: usize) -> Self {
+        let kernel = ScaleSplit::new(split.params);
         if split.is_single_precision() {
-            Self::Single(split, Prepared::displacement(&kernel, base, n_coarse))
+            Self::Single(split, Prepared::displacement(&kernel, solid, n_coarse))
         } else {
-            Self::Double(split, Prepared::displacement(&kernel, base, n_coarse))
+            Self::Double(split, Prepared::displacement(&kernel, solid, n_coarse))
         }
     }
 

@@ -19,5 +19,6 @@ pub(crate) mod patch;
 pub(crate) mod prolongation;
 pub(crate) mod roughness;
 pub(crate) mod scaled_operator;
+pub(crate) mod solid;
 pub(crate) mod solution;
 pub(crate) mod split;

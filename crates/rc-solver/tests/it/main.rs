@@ -6,6 +6,7 @@ mod hardness;
 mod hardness_of_solids;
 mod observers;
 mod operators;
+mod split;
 mod stops;
 mod uniform;
 

@@ -9,7 +9,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rc_core::{Boundary, Field, Grid, HeightSource, Kernel, Operator, Silent};
 use rc_fft::SymbolTable;
-use rc_kernel::{FreeLove, Love};
+use rc_kernel::{FreeLove, HalfSpace, Love};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet};
 
 use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
@@ -184,10 +184,11 @@ impl Scene<'_> {
             base_side: self.base,
             memory_limit: None,
         };
-        let ground = Ground::new(HeightSource::Map(self.map), self.boundary, &params).expect("heights");
+        let kernel: &dyn Kernel = if self.boundary == Boundary::Free { &FreeLove } else { &Love };
+        let ground = Ground::new(HeightSource::Map(self.map), kernel, &HalfSpace, &params).expect("heights");
         let place = Place::default();
         let problem = AdaptiveProblem::on(&Arc::new(ground), self.control.into(), &params, &place).expect("a problem");
-        let solver = problem.first_solver();
+        let solver = problem.first_solver(kernel);
         let solved = problem.solve_levels(&solver, solver.prepare(solver.begin(&Silent), &Silent), &Silent);
         let grid = self.map.grid();
         let mut pressure = vec![0.0; grid.len()];
@@ -198,7 +199,6 @@ impl Scene<'_> {
             }
         }
         let mut displacement = vec![0.0; grid.len()];
-        let kernel: &dyn Kernel = if self.boundary == Boundary::Free { &FreeLove } else { &Love };
         UniformOperator::new(grid, kernel).apply(&pressure, &mut displacement, &mut []);
         Audited { base: problem.ground.kernels.base(), problem: problem.problem, solved, pressure, displacement }
     }

@@ -16,6 +16,7 @@ use crate::tiles::operator::sizes::{Real, Sizes};
 use crate::tiles::operator::stencil::Taps;
 use crate::tiles::operator::transfer::Transfer;
 use crate::tiles::operator::uneven::Uneven;
+use crate::tiles::solid::{Solid, wavenumber};
 
 /// Tables of one operator on levels 0 to K.
 ///
@@ -54,7 +55,7 @@ impl<T: Real> Tables<T> {
 /// The split kernel of one base grid. Tables of any number of levels follow from it.
 pub(crate) struct Prepared<T> {
     sizes: Sizes<T>,
-    base: Base,
+    solid: Solid,
     symbol: SymbolTable<T>,
     /// Stencil and transfer of the finest level. Those below are of levels between it and the base grid.
     finest: (Stencil, Transfer<T>),
@@ -79,20 +80,21 @@ const INVERSE_RADIUS: usize = 2;
 
 impl<T: Real> Prepared<T> {
     /// Prepares `v = L p` for Love's squares, and elements up to 2^`n_coarse` times as large.
-    pub(crate) fn displacement(split: &ScaleSplit, base: impl Into<Base>, n_coarse: usize) -> Self {
-        let base = base.into();
+    pub(crate) fn displacement(split: &ScaleSplit, solid: impl Into<Solid>, n_coarse: usize) -> Self {
+        let solid = solid.into();
+        let base = solid.base();
         let cutoff = 0.5 * split.params().cutoff as f64 * base.grid().spacing().min_element();
         let sizes = T::sizes(split.params());
         let transfer = |filter: &Filter| Transfer::new(filter, sizes.taps);
         Self {
             sizes,
-            base,
-            symbol: remainder_symbol(split, base, cutoff),
+            symbol: remainder_symbol(split, &solid, cutoff),
             finest: (split.love_stencil(), transfer(&split.love_filter())),
             between: (level_stencil(split, base.grid()), transfer(&split.level_filter())),
             coarse: split.coarse_elements(n_coarse),
             scale: Scale::Side,
-            remainder_curvature: split.remainder_curvature(cutoff),
+            remainder_curvature: split.remainder_curvature(cutoff) + solid.curvature(),
+            solid,
             split: split.clone(),
         }
     }
@@ -108,7 +110,7 @@ impl<T: Real> Prepared<T> {
         });
         Self {
             sizes,
-            base,
+            solid: base.into(),
             symbol,
             finest: part.clone(),
             between: part,
@@ -134,9 +136,9 @@ impl<T: Real> Prepared<T> {
 
     /// Tables for a finest level of this whole grid.
     pub(crate) fn tables(&self, finest: Grid) -> Tables<T> {
-        let n_levels = ladder::n_levels(self.base.grid(), finest);
+        let n_levels = ladder::n_levels(self.base().grid(), finest);
         // A preconditioner halves every level.
-        let is_uneven = matches!(self.scale, Scale::Side) && !ladder::is_even(self.base.grid(), finest);
+        let is_uneven = matches!(self.scale, Scale::Side) && !ladder::is_even(self.base().grid(), finest);
         let below = is_uneven.then(|| self.below_uneven(finest, n_levels));
         let (mut levels, mut sum) = (Vec::with_capacity(n_levels), 0.0);
         for level in 1..=n_levels {
@@ -147,20 +149,24 @@ impl<T: Real> Prepared<T> {
             levels.push((Taps::new(stencil, factor, self.sizes.around), transfer.clone()));
         }
         let mut base = if is_uneven && n_levels == 1 {
-            remainder_symbol(&self.split, self.base, self.cutoff() * finest.spacing().min_element())
+            remainder_symbol(&self.split, &self.solid, self.cutoff() * finest.spacing().min_element())
         } else {
             self.symbol.clone()
         };
         match self.scale {
             // With free borders a uniform pressure displaces.
-            Scale::Side if self.base.is_free() => {}
+            Scale::Side if self.base().is_free() => {}
             // A constant gives zero (Eq. 3). The base grid subtracts what the stencils add to it.
-            Scale::Side => base.set_mean(T::rounded(-sum / self.base.grid().len() as f64)),
+            Scale::Side => base.set_mean(T::rounded(-sum / self.base().grid().len() as f64)),
             // Its stencils act on differences between levels, which are zero for a constant.
             Scale::Inverse => base.set_mean(T::rounded(0.0)),
         }
         let uneven = is_uneven.then(|| self.uneven(finest, n_levels));
         Tables { sizes: self.sizes, base, levels, uneven, coarse: self.coarse_tables(n_levels) }
+    }
+
+    fn base(&self) -> Base {
+        self.solid.base()
     }
 
     /// The cutoff, in elements of a level.
@@ -172,15 +178,15 @@ impl<T: Real> Prepared<T> {
     ///
     /// The finest level does not have twice as many elements. The two cutoffs differ by less than a factor of two.
     fn below_uneven(&self, finest: Grid, n_levels: usize) -> Stencil {
-        let spacing = ladder::doubled(self.base.grid(), n_levels - 1).spacing();
+        let spacing = ladder::doubled(self.base().grid(), n_levels - 1).spacing();
         let inner = self.cutoff() * finest.spacing().min_element() / spacing.min_element();
         self.split.uneven_level_stencil(inner, (spacing / spacing.min_element()).into())
     }
 
     /// The transfer to an uneven finest level.
     fn uneven(&self, finest: Grid, n_levels: usize) -> Uneven<T> {
-        let levels = [sides_of(finest), sides_of(ladder::doubled(self.base.grid(), n_levels - 1))];
-        let [fine, coarse] = levels.map(|sides| self.base.period_of(sides));
+        let levels = [sides_of(finest), sides_of(ladder::doubled(self.base().grid(), n_levels - 1))];
+        let [fine, coarse] = levels.map(|sides| self.base().period_of(sides));
         let filters = [0, 1].map(|axis| self.split.uneven_filter(coarse[axis] as f64 / fine[axis] as f64));
         Uneven::new(&filters, fine, coarse)
     }
@@ -189,7 +195,7 @@ impl<T: Real> Prepared<T> {
     ///
     /// The level's grid is the doubled base grid, unless another `grid` is given.
     fn factor(&self, level: usize, grid: Option<Grid>) -> f64 {
-        let grid = grid.unwrap_or_else(|| ladder::doubled(self.base.grid(), level));
+        let grid = grid.unwrap_or_else(|| ladder::doubled(self.base().grid(), level));
         match self.scale {
             Scale::Side => grid.spacing().min_element(),
             Scale::Inverse => grid.nx() as f64,
@@ -213,8 +219,9 @@ impl<T: Real> Prepared<T> {
 
 /// The remainder of the split at `cutoff`, in λ, on the base grid.
 ///
-/// It is that without images where borders are free.
-fn remainder_symbol<T: Real>(split: &ScaleSplit, base: Base, cutoff: f64) -> SymbolTable<T> {
+/// It is that without images where borders are free, and has the deviation of the solid otherwise.
+fn remainder_symbol<T: Real>(split: &ScaleSplit, solid: &Solid, cutoff: f64) -> SymbolTable<T> {
+    let base = solid.base();
     if base.is_free() {
         let (spacing, reach) = (base.grid().spacing(), base.period().map(|n| n / 2 + 1));
         return table_of_response(base.periodic_grid(), reach, &|ix, iy| {
@@ -224,8 +231,8 @@ fn remainder_symbol<T: Real>(split: &ScaleSplit, base: Base, cutoff: f64) -> Sym
     }
     let base = base.grid();
     SymbolTable::new(base, |kx: usize, ky: usize| {
-        let q = 2.0 * PI * (kx as f64).hypot(ky as f64 / base.cell_ratio());
-        if q == 0.0 { 0.0 } else { split.remainder_symbol(q, cutoff) }
+        let q = wavenumber(base, kx, ky);
+        if q == 0.0 { 0.0 } else { split.remainder_symbol(q, cutoff) + solid.deviation(kx, ky) }
     })
 }
 

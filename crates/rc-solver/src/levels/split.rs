@@ -1,0 +1,81 @@
+//! A quick check, before a solve, that a kernel and its split by scale are one solid.
+
+use std::f64::consts::{PI, TAU};
+
+use rc_core::{Grid, Kernel, SplitByScale};
+use rc_kernel::{FreeLove, Love};
+
+use crate::problem::contract::{FEWEST_WAVES, places};
+use crate::problem::error::ProblemError;
+use crate::tiles::solid::smallest_deviation;
+
+/// Relative difference that quadrature may leave between a symbol and that of its split.
+const DIFFERENCE: f64 = 1e-8;
+
+/// Refuses a `split` that is not of the solid of its `kernel`, or whose bounds do not hold.
+///
+/// The symbols on `grid` are compared, or the responses where borders are free. The longest waves and a sample of the
+/// others are checked. Aliases of the deviation are left out, because the base grid resolves it.
+pub(crate) fn check_split(kernel: &dyn Kernel, split: &dyn SplitByScale, grid: Grid) -> Result<(), ProblemError> {
+    let check = Check { kernel: kernel.name(), split, grid };
+    if let (Some(own), Some(of_split)) = (kernel.free_response(grid), FreeLove.free_response(grid)) {
+        let mut distances = places([grid.nx(), grid.ny()], FEWEST_WAVES);
+        return distances.try_for_each(|at| check.same("free response", at, own(at.0, at.1), of_split(at.0, at.1)));
+    }
+    let (own, half_space) = (kernel.symbol(grid), Love.symbol(grid));
+    let waves = places([grid.nx() / 2 + 1, grid.ny() / 2 + 1], FEWEST_WAVES);
+    waves.filter(|&wave| wave != (0, 0)).try_for_each(|wave| {
+        let deviation = check.deviation(wave)?;
+        check.same("symbol", wave, own(wave.0, wave.1), half_space(wave.0, wave.1) + deviation)
+    })
+}
+
+/// A split that is checked.
+struct Check<'a> {
+    kernel: &'static str,
+    split: &'a dyn SplitByScale,
+    grid: Grid,
+}
+
+impl Check<'_> {
+    /// The deviation of the symbol at a wave. Refuses bounds that it exceeds.
+    fn deviation(&self, (kx, ky): (usize, usize)) -> Result<f64, ProblemError> {
+        let q = TAU * self.grid.waves(kx, ky);
+        let (deviation, curvature) = (self.split.deviation(q), self.split.curvature());
+        // A wave in the transform of a function is at most the integral of the function's magnitude.
+        let of_wave = q * q * deviation.abs();
+        let is_bounded = of_wave <= curvature;
+        if !is_bounded {
+            return Err(self.fault("curvature", (kx, ky), curvature, (of_wave, " or more")));
+        }
+        let (smallest, below) = (smallest_deviation(), self.split.deviates_below(smallest_deviation()));
+        let is_announced = below >= q || 0.5 * q * deviation.abs() <= smallest;
+        if !is_announced {
+            return Err(self.fault("wavenumber of the shortest deviation", (kx, ky), below, (q, " or more")));
+        }
+        // The pressure of a wave is its mean over each element.
+        let mean = |k: usize, n: usize| sinc(PI * k as f64 / n as f64);
+        Ok(deviation * mean(kx, self.grid.nx()) * mean(ky, self.grid.ny()))
+    }
+
+    /// Refuses a value of the split that is not the kernel's own.
+    fn same(&self, what: &'static str, at: (usize, usize), own: f64, of_split: f64) -> Result<(), ProblemError> {
+        let is_same = (of_split - own).abs() <= DIFFERENCE * own.abs();
+        if is_same { Ok(()) } else { Err(self.fault(what, at, of_split, (own, ", as the kernel's own"))) }
+    }
+
+    fn fault(
+        &self,
+        what: &'static str,
+        (kx, ky): (usize, usize),
+        value: f64,
+        (wanted, relation): (f64, &'static str),
+    ) -> ProblemError {
+        let Self { kernel, grid, .. } = *self;
+        ProblemError::Split { kernel, grid, what, kx, ky, value, wanted, relation }
+    }
+}
+
+fn sinc(x: f64) -> f64 {
+    if x == 0.0 { 1.0 } else { x.sin() / x }
+}
