@@ -47,3 +47,20 @@ macro_rules! packed {
 }
 
 packed!(u8, u32, u64, f32, f64);
+
+/// Numbers that belong together, one after the other.
+impl<T: Packed, const N: usize> Packed for [T; N] {
+    const BYTES: usize = N * T::BYTES;
+
+    fn pack(values: &[Self], bytes: &mut Vec<u8>) {
+        T::pack(values.as_flattened(), bytes);
+    }
+
+    fn unpack(bytes: &[u8], values: &mut [Self]) {
+        T::unpack(bytes, values.as_flattened_mut());
+    }
+
+    fn unpack_all(bytes: &[u8]) -> Vec<Self> {
+        T::unpack_all(bytes).as_chunks::<N>().0.to_vec()
+    }
+}

@@ -117,21 +117,6 @@ impl Elements {
         Self::new(levels)
     }
 
-    /// The tiles for which `wanted` is true.
-    ///
-    /// `wanted` gets the sides of the level in cells, the place of the tile, and the range of its cells in a vector.
-    #[must_use]
-    pub fn filtered(&self, wanted: impl Fn([usize; 2], [u32; 2], Range<usize>) -> bool) -> Self {
-        let level = |(tiles, &start): (&TileSet, &usize)| {
-            let places = tiles.places().iter().enumerate();
-            let cells = |tile: usize| start + tile * CELLS..start + (tile + 1) * CELLS;
-            let chosen =
-                places.filter(|&(tile, &place)| wanted(tiles.sides(), place, cells(tile))).map(|(_, &place)| place);
-            tiles.of_same_cell(tiles.sides(), chosen.collect())
-        };
-        Self::new(self.levels.iter().zip(&self.starts).map(level).collect())
-    }
-
     /// Whether the elements cover the whole periodic cell.
     #[must_use]
     pub fn cover_cell(&self) -> bool {
@@ -143,19 +128,6 @@ impl Elements {
     #[must_use]
     pub fn cells(&self, coarser: usize) -> Range<usize> {
         self.starts[coarser]..self.starts[coarser] + self.levels[coarser].n_cells()
-    }
-
-    /// The blocks of a vector.
-    ///
-    /// Each is the number of a level and a range of its tiles.
-    #[must_use]
-    pub fn blocks(&self) -> Vec<(usize, Range<usize>)> {
-        let per_block = BLOCK_CELLS / CELLS;
-        let blocks = |(coarser, tiles): (usize, &TileSet)| {
-            let n = tiles.len();
-            (0..n.div_ceil(per_block)).map(move |i| (coarser, i * per_block..((i + 1) * per_block).min(n)))
-        };
-        self.levels.iter().enumerate().flat_map(blocks).collect()
     }
 
     /// Area of an element of a level, in units of the smallest elements.

@@ -46,6 +46,6 @@ mod transfer;
 pub use self::division::divide;
 pub use self::elements::{BLOCK_CELLS, BLOCK_TILES, Elements};
 pub use self::patch::{Patch, gather};
-pub use self::prolongation::{prolong, prolong_onto, prolong_some};
+pub use self::prolongation::{prolong, prolong_onto};
 pub use self::refinement::{ContactFields, RING};
 pub use self::tiles::{CELLS, TILE, TileSet, cell_over, means_of_quarter, put_tile, quarters};

@@ -18,48 +18,32 @@ use near_contact::{MARGIN, PART_KEPT_OF_SINGLE_CELL, SIDE, is_near_contact, is_s
 
 /// Interpolates the positive part of `function` to the next finer level, of `sides` cells.
 ///
-/// Returns the tiles of the finer level on which, or within two cells of which, `function` is positive. The second
-/// result has the values on their cells. The finer level has twice as many cells along both sides, or slightly fewer.
+/// Returns the tiles below those in the range `which` on which, or within two cells of which, `function` is positive.
+/// Each has the values on its cells. The finer level has twice as many cells along both sides, or slightly fewer. In
+/// the latter case, two ranges may both have a tile that is below both.
 ///
 /// `function` has a value for each cell of `tiles`. None of these tiles may extend beyond the level. `elsewhere` is the
 /// value of the function where there is no tile. Beyond a free border, the function has its value at the border.
 ///
 /// # Panics
-/// When there are fewer values than cells.
-#[must_use]
-pub fn prolong(tiles: &TileSet, function: &[f64], elsewhere: f64, sides: [usize; 2]) -> (TileSet, Vec<f64>) {
-    let children: Vec<([u32; 2], Box<[f64; CELLS]>)> = if sides == tiles.sides().map(|side| 2 * side) {
-        prolong_some(tiles, 0..tiles.len(), function, elsewhere)
-    } else {
-        uneven::prolong(tiles, function, elsewhere, sides)
-    };
-    let fine = tiles.of_same_cell(sides, children.iter().map(|&(place, _)| place).collect());
-    let mut result = vec![0.0; fine.n_cells()];
-    for ([column, row], values) in children {
-        let at = fine.find(column.into(), row.into()).expect("it was just put there");
-        result[at * CELLS..][..CELLS].copy_from_slice(values.as_slice());
-    }
-    (fine, result)
-}
-
-/// The tiles and values that [`prolong`] returns below some of `tiles`.
-///
-/// The finer level has twice as many cells along both sides.
-///
-/// # Panics
 /// When there are fewer values than cells, or when `which` is outside `tiles`.
 #[must_use]
-pub fn prolong_some(
+pub fn prolong(
     tiles: &TileSet,
     which: Range<usize>,
     function: &[f64],
     elsewhere: f64,
+    sides: [usize; 2],
 ) -> Vec<([u32; 2], Box<[f64; CELLS]>)> {
+    let places = &tiles.places()[which];
+    if sides != tiles.sides().map(|side| 2 * side) {
+        return uneven::prolong(tiles, places, function, elsewhere, sides);
+    }
     let of_tile = |&place: &[u32; 2]| {
         let children = quarters(place).into_iter().zip(quarters_in_contact(tiles, function, elsewhere, place));
         children.filter_map(|(place, values)| values.map(|values| (place, values))).collect()
     };
-    tiles.places()[which].par_iter().map(of_tile).collect::<Vec<Vec<_>>>().into_iter().flatten().collect()
+    places.par_iter().map(of_tile).collect::<Vec<Vec<_>>>().into_iter().flatten().collect()
 }
 
 /// Fills `values` on the smallest elements of `refined` with the positive part of `function`.
@@ -138,6 +122,14 @@ fn fine_tile(patch: &Patch<f64, SIDE>, (half_x, half_y): (usize, usize)) -> Opti
 mod tests {
     use super::*;
 
+    /// The finer tiles below all tiles, and the values on them.
+    fn prolonged(tiles: &TileSet, function: &[f64], sides: [usize; 2]) -> (TileSet, Vec<f64>) {
+        let mut children = prolong(tiles, 0..tiles.len(), function, -1.0, sides);
+        let fine = tiles.of_same_cell(sides, children.iter().map(|(place, _)| *place).collect());
+        children.sort_by_key(|([column, row], _)| fine.find((*column).into(), (*row).into()));
+        (fine, children.iter().flat_map(|(_, values)| **values).collect())
+    }
+
     /// Distance from the edge of a disc in λ, positive inside and negative outside.
     fn disc(tiles: &TileSet, radius: f64) -> Vec<f64> {
         let side = tiles.sides()[0] as f64;
@@ -155,7 +147,7 @@ mod tests {
     #[test]
     fn the_edge_of_a_disc_stays_where_it_is() {
         let tiles = TileSet::full([64, 64]);
-        let (fine, values) = prolong(&tiles, &disc(&tiles, 0.2), -1.0, [128, 128]);
+        let (fine, values) = prolonged(&tiles, &disc(&tiles, 0.2), [128, 128]);
         assert!(fine.len() < 4 * tiles.len() / 2, "only the disc and its surroundings have tiles");
         let exact = disc(&fine, 0.2);
         for (value, exact) in values.iter().zip(&exact) {
@@ -170,7 +162,7 @@ mod tests {
     fn the_edge_of_a_disc_stays_where_it_is_on_a_level_of_any_size() {
         let tiles = TileSet::full([64, 64]);
         for sides in [[125, 125], [120, 120], [113, 113]] {
-            let (fine, values) = prolong(&tiles, &disc(&tiles, 0.2), -1.0, sides);
+            let (fine, values) = prolonged(&tiles, &disc(&tiles, 0.2), sides);
             assert!(fine.len() < TileSet::full(sides).len() / 2, "only the disc and its surroundings have tiles");
             for (value, exact) in values.iter().zip(&disc(&fine, 0.2)) {
                 let allowed = if *exact > 0.15 { 0.02 } else { 1e-3 };
@@ -193,7 +185,7 @@ mod tests {
             let near = tiles.places().iter().zip(function.chunks(CELLS)).filter(|(_, f)| f.iter().any(|&f| f > -0.05));
             let some = TileSet::new([64, 64], near.map(|(&place, _)| place).collect());
             assert!(some.len() < 40);
-            let (fine, values) = prolong(&some, &near_corner(&some), -1.0, sides);
+            let (fine, values) = prolonged(&some, &near_corner(&some), sides);
             for (value, exact) in values.iter().zip(&near_corner(&fine)) {
                 let allowed = if *exact > 0.15 { 0.02 } else { 1e-3 };
                 assert!((value - exact.max(0.0)).abs() < allowed, "{sides:?}: {value} for {exact}");
@@ -206,7 +198,7 @@ mod tests {
         let tiles = TileSet::full([32, 32]);
         let mut function = vec![-1.0; tiles.n_cells()];
         function[CELLS + 27] = 0.1;
-        let (fine, values) = prolong(&tiles, &function, -1.0, [64, 64]);
+        let (fine, values) = prolonged(&tiles, &function, [64, 64]);
         assert_eq!(values.iter().filter(|&&value| value > 0.0).count(), 4, "its four quarters");
         assert!(fine.len() < 5, "tiles near the cell");
     }
@@ -215,7 +207,7 @@ mod tests {
     fn on_elements_of_one_size_both_ways_agree() {
         let tiles = TileSet::full([64, 64]);
         let function = disc(&tiles, 0.3);
-        let (fine, values) = prolong(&tiles, &function, -1.0, [128, 128]);
+        let (fine, values) = prolonged(&tiles, &function, [128, 128]);
         let (elements, refined) = (Elements::uniform(tiles), Elements::uniform(fine));
         let mut onto = vec![f64::NAN; refined.len()];
         prolong_onto(&elements, &function, -1.0, &refined, &mut onto);

@@ -262,15 +262,15 @@ impl TileSet {
     /// The coarser level has half as many cells along both sides. The halo is `halo` of its cells wide.
     #[must_use]
     pub fn parents(&self, halo: usize) -> Self {
-        self.on_coarser(self.sides.map(|side| side / 2), halo)
+        self.on_coarser(self.places(), self.sides.map(|side| side / 2), halo)
     }
 
-    /// The tiles of a coarser level over these tiles and their halo.
+    /// The tiles of a coarser level over the tiles at `places` of this level, and over their halo.
     ///
     /// The coarser level has `sides` cells along x and y, which are whole numbers of tiles. The halo is `halo` cells of
     /// the coarser level wide.
     #[must_use]
-    pub fn on_coarser(&self, sides: [usize; 2], halo: usize) -> Self {
+    pub fn on_coarser(&self, places: &[[u32; 2]], sides: [usize; 2], halo: usize) -> Self {
         let extent = sides.map(|side| side / TILE);
         let mut marks = marks_of(sides);
         let tiles = |[column, row]: [u32; 2], axis: usize| {
@@ -281,7 +281,7 @@ impl TileSet {
             let end = ((last * sides[axis]).div_ceil(self.sides[axis]) + halo) as i64;
             start.div_euclid(TILE as i64)..=(end - 1).div_euclid(TILE as i64)
         };
-        for &place in self.places() {
+        for &place in places {
             for y in tiles(place, 1) {
                 for x in tiles(place, 0) {
                     self.mark(&mut marks, extent, [x, y]);

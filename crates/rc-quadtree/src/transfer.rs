@@ -103,19 +103,48 @@ impl Elements {
         (coarser, values)
     }
 
+    /// The mesh without its coarsest level, and the values on it.
+    ///
+    /// An element of the coarsest level stands for its quarters.
+    fn without_coarsest(&self, values: &[f64]) -> (Self, Vec<f64>) {
+        let (coarsest, finer) = self.levels().split_last().expect("a mesh has at least one level");
+        let mut levels = finer.to_vec();
+        let parts = coarsest.places().iter().copied().flat_map(quarters).collect();
+        let last = levels.len() - 1;
+        levels[last] = levels[last].with(&levels[last].of_same_cell(levels[last].sides(), parts));
+        let finer = Self::new(levels);
+        let values = self.moved(&finer, values, 0.0);
+        (finer, values)
+    }
+
     /// The mesh with elements of the coarsest level only, and the values on it.
     ///
     /// There is a tile wherever there are elements. Values are means over smaller elements.
     #[must_use]
     pub fn on_coarsest<'a>(&self, values: &'a [f64]) -> (TileSet, Cow<'a, [f64]>) {
-        if self.levels().len() == 1 {
-            return (self.finest().clone(), Cow::Borrowed(values));
+        self.on_one_level(values, Self::without_finest)
+    }
+
+    /// The mesh with elements of the finest level only, and the values on it.
+    ///
+    /// There is a tile wherever there are elements. A larger element stands for its parts.
+    #[must_use]
+    pub fn on_finest<'a>(&self, values: &'a [f64]) -> (TileSet, Cow<'a, [f64]>) {
+        self.on_one_level(values, Self::without_coarsest)
+    }
+
+    /// The mesh after steps that each take one level away, and the values on it.
+    fn on_one_level<'a>(
+        &self,
+        values: &'a [f64],
+        step: impl Fn(&Self, &[f64]) -> (Self, Vec<f64>),
+    ) -> (TileSet, Cow<'a, [f64]>) {
+        let (mut mesh, mut values) = (Cow::Borrowed(self), Cow::Borrowed(values));
+        while mesh.levels().len() > 1 {
+            let (other, on_other) = step(&mesh, &values);
+            (mesh, values) = (Cow::Owned(other), Cow::Owned(on_other));
         }
-        let (mut coarser, mut values) = self.without_finest(values);
-        while coarser.levels().len() > 1 {
-            (coarser, values) = coarser.without_finest(&values);
-        }
-        (coarser.finest().clone(), Cow::Owned(values))
+        (mesh.finest().clone(), values)
     }
 
     /// Values on the elements of another mesh `to`.

@@ -9,11 +9,12 @@ use crate::tiles::{CELLS, TILE, TileSet};
 /// Cells of the finer level along an axis, for a tile and its margin.
 const WIDE: usize = TILE + 2 * MARGIN;
 
-/// The tiles of a level of `sides` cells where the function is positive, or nearly.
+/// The tiles of a level of `sides` cells, below those at `places`, where the function is positive, or nearly.
 ///
 /// The values are its positive part.
 pub(super) fn prolong(
     tiles: &TileSet,
+    places: &[[u32; 2]],
     function: &[f64],
     elsewhere: f64,
     sides: [usize; 2],
@@ -21,13 +22,13 @@ pub(super) fn prolong(
     let near_contact = |&[column, row]: &[u32; 2]| {
         let mut patch: Patch<f64, SIDE> = [[0.0; SIDE]; SIDE];
         gather(function, tiles, (i64::from(column) - 1, i64::from(row) - 1), 0..SIDE, &mut patch);
-        let places = || {
+        let below = || {
             tiles_under(column, sides[0], tiles.sides()[0])
                 .flat_map(|x| tiles_under(row, sides[1], tiles.sides()[1]).map(move |y| [x, y]))
         };
-        if is_near_contact(&patch) { places().collect() } else { Vec::new() }
+        if is_near_contact(&patch) { below().collect() } else { Vec::new() }
     };
-    let candidates: Vec<Vec<[u32; 2]>> = tiles.places().par_iter().map(near_contact).collect();
+    let candidates: Vec<Vec<[u32; 2]>> = places.par_iter().map(near_contact).collect();
     // Sorts the tiles and removes duplicates.
     let fine = tiles.of_same_cell(sides, candidates.into_iter().flatten().collect());
     let of_tile = |&place: &[u32; 2]| {

@@ -124,18 +124,16 @@ impl Descent<'_> {
         let mut loads = vec![Load::default(); self.squares().len()];
         let n_clipped = ranks.count(of_blocks.iter().map(|(n, _)| *n as usize).sum());
         let of_blocks = of_blocks.into_iter().map(|(_, of_block)| of_block).enumerate();
-        let all = of_blocks.flat_map(|(i, of_block)| of_block.into_iter().map(move |load| (i, load)));
-        if ranks.are_alone() {
-            for (i, (square, load)) in all {
-                loads[square] = loads[square].plus(load, layout.area(i));
-            }
-        } else {
-            // The order is that of blocks, including those of other ranks. All areas are 1.
-            let mine = all.flat_map(|(_, (square, load))| [square as f64, load.clipped, load.added]).collect();
-            for &[square, clipped, added] in ranks.concatenate(mine).as_chunks::<3>().0 {
-                let square = &mut loads[square as usize];
-                *square = square.plus(Load { clipped, added }, 1.0);
-            }
+        let mine = of_blocks.flat_map(|(i, of_block)| {
+            let in_units = move |(square, load): (usize, Load)| {
+                [square as f64, layout.area(i) * load.clipped, layout.area(i) * load.added]
+            };
+            of_block.into_iter().map(in_units)
+        });
+        // The order is that of blocks, including those of other ranks.
+        for [square, clipped, added] in ranks.concatenate(mine.collect()) {
+            let square = &mut loads[square as usize];
+            *square = square.plus(Load { clipped, added }, 1.0);
         }
         (n_clipped as u64, loads)
     }

@@ -97,14 +97,13 @@ impl<'a> AdaptiveProblem<'a> {
         params: &AdaptiveParams,
         place: &Place,
     ) -> Result<Self, AdaptiveError> {
-        if !place.ranks.are_alone() && params.border_level > 0 {
-            return Err(AdaptiveError::OverRanks { needs: "elements of one size, without a border level" });
-        }
-        if !place.ranks.are_alone() && bounds.hardness.is_finite() {
-            return Err(AdaptiveError::OverRanks { needs: "a problem without a hardness" });
-        }
-        if !place.ranks.are_alone() && !ground.heights.ladder().is_even() {
-            return Err(AdaptiveError::OverRanks { needs: "a grid that halves down to its base grid" });
+        let needs = [
+            (params.border_level == 0, "elements of one size, without a border level"),
+            (!bounds.hardness.is_finite(), "a problem without a hardness"),
+            (ground.heights.ladder().is_even(), "a grid that halves down to its base grid"),
+        ];
+        if let Some((_, needs)) = needs.into_iter().find(|(is_met, _)| place.is_shared() && !is_met) {
+            return Err(AdaptiveError::OverRanks { needs });
         }
         let split = first_split(params)?;
         let support = Support { boundary: ground.boundary(), compliance: 0.0 };

@@ -68,7 +68,7 @@ pub(crate) fn keep(checkpoint: &dyn Checkpoint, start: &LevelStart, number: f64)
         }
         return;
     }
-    let head = [packed(&numbers(start, number)), packed(mesh.finest().places().as_flattened())];
+    let head = [packed(&numbers(start, number)), packed(mesh.finest().places())];
     let own = pressure.chunks(AT_ONCE * CELLS).map(packed);
     let others = (1..ranks.size()).flat_map(|rank| (0..n_pieces(rank)).map(move |_| rank));
     let others = others.map(|rank| ranks.exchange(Vec::new(), &[rank]).concat());
@@ -105,7 +105,8 @@ fn read(checkpoint: &dyn Checkpoint, (grid, boundary): (Grid, Boundary), ranks: 
         offset += len as u64;
         bytes
     };
-    let levels = f64::unpack_all(&next(is_possible.then_some(n_levels as usize)? * N_OF_LEVEL * f64::BYTES)?);
+    let n_bytes = is_possible.then_some(n_levels as usize)? * <[f64; N_OF_LEVEL]>::BYTES;
+    let levels = <[f64; N_OF_LEVEL]>::unpack_all(&next(n_bytes)?);
     let level = |&[nx, ny, iterations, operators, preconditioners]: &[f64; N_OF_LEVEL]| {
         Some(LevelInfo {
             grid: grid.with_elements(nx as usize, ny as usize).ok()?,
@@ -114,15 +115,14 @@ fn read(checkpoint: &dyn Checkpoint, (grid, boundary): (Grid, Boundary), ranks: 
             preconditioner_applications: preconditioners as usize,
         })
     };
-    let levels = levels.as_chunks::<N_OF_LEVEL>().0.iter().map(level).collect::<Option<Vec<_>>>()?;
-    let places = u32::unpack_all(&next(n_tiles as usize * 2 * u32::BYTES)?);
+    let levels = levels.iter().map(level).collect::<Option<Vec<_>>>()?;
+    let places = <[u32; 2]>::unpack_all(&next(n_tiles as usize * <[u32; 2]>::BYTES)?);
     let grid = grid.with_elements(nx as usize, ny as usize).ok()?;
     let extent = [grid.nx(), grid.ny()].map(|side| side.div_ceil(TILE));
-    let places = places.as_chunks::<2>().0;
     if places.iter().any(|place| (0..2).any(|axis| place[axis] as usize >= extent[axis])) {
         return None;
     }
-    let tiles = TileSet::new([grid.nx(), grid.ny()], places.to_vec()).with_boundary(boundary);
+    let tiles = TileSet::new([grid.nx(), grid.ny()], places).with_boundary(boundary);
     let elements = Mesh::new(Elements::uniform(tiles), ranks);
     let own = elements.own();
     offset += (own.start * f64::BYTES) as u64;

@@ -53,6 +53,13 @@ pub(crate) struct Given<'a> {
     pub(crate) kernel: &'a dyn Kernel,
 }
 
+impl Place {
+    /// Whether several ranks share the problem.
+    pub(crate) fn is_shared(&self) -> bool {
+        self.ranks.size() > 1
+    }
+}
+
 /// Heights, load and operators of a problem.
 pub(crate) struct Setup<'a> {
     pub(crate) kernel: &'a dyn Kernel,

@@ -21,10 +21,8 @@ pub(super) fn each_of_ranks<E>(
         for other in 1..ranks.size() {
             // The last message is the one that is not full.
             loop {
-                let message = ranks.exchange(Vec::new(), &[other]).into_iter().flatten().collect::<Vec<u8>>();
-                let values = f64::unpack_all(&message);
-                let elements = values.as_chunks::<4>().0;
-                for &[x, y, side, pressure] in elements {
+                let elements = <[f64; 4]>::unpack_all(&ranks.exchange(Vec::new(), &[other]).concat());
+                for &[x, y, side, pressure] in &elements {
                     take(ContactElement { centre: DVec2::new(x, y), side, pressure })?;
                 }
                 if elements.len() < AT_ONCE {
@@ -34,16 +32,12 @@ pub(super) fn each_of_ranks<E>(
         }
         return Ok(());
     }
+    let mut numbers = own.map(|ContactElement { centre, side, pressure }| [centre.x, centre.y, side, pressure]);
     loop {
-        let values: Vec<f64> = own
-            .by_ref()
-            .take(AT_ONCE)
-            .flat_map(|ContactElement { centre, side, pressure }| [centre.x, centre.y, side, pressure])
-            .collect();
-        let mut bytes = Vec::new();
-        f64::pack(&values, &mut bytes);
+        let (elements, mut bytes): (Vec<_>, _) = (numbers.by_ref().take(AT_ONCE).collect(), Vec::new());
+        Packed::pack(&elements, &mut bytes);
         let _ = ranks.exchange(vec![(0, bytes)], &[]);
-        if values.len() < 4 * AT_ONCE {
+        if elements.len() < AT_ONCE {
             return Ok(());
         }
     }

@@ -52,7 +52,7 @@ pub(super) fn plan<'a>(
             Ok((chosen, MethodReason::AskedFor(method)))
         }
     }?;
-    if !problem.place.ranks.are_alone() && !matches!(chosen, ChosenMethod::Adaptive(_)) {
+    if problem.place.is_shared() && !matches!(chosen, ChosenMethod::Adaptive(_)) {
         return Err(SolveError::OneRank { reason });
     }
     Ok(Plan { problem, params: *params, bound, chosen, reason, shared })

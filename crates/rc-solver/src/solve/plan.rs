@@ -85,7 +85,7 @@ impl<'a> Plan<'a> {
                 Ok(solution) => {
                     return converged(Solution::on_tiles(how(Method::Adaptive, reason), solution, adaptive));
                 }
-                Err(reason) if !problem.place.ranks.are_alone() => return Err(SolveError::OneRank { reason }),
+                Err(reason) if problem.place.is_shared() => return Err(SolveError::OneRank { reason }),
                 Err(scattered) => (ChosenMethod::Uniform, scattered),
             },
             on_grid => (on_grid, reason),

@@ -33,21 +33,17 @@ impl Deal {
     pub(crate) fn of_coarser(&self, finer: &TileSet, coarser: &TileSet) -> Self {
         let (fine, coarse) = (finer.extent(), coarser.extent());
         let mut next = 0;
-        let last = self.starts.len() - 1;
         let start = |(rank, &tile): (usize, &usize)| {
-            let over = finer.places().get(tile).and_then(|place| {
+            let over = finer.places().get(tile).map(|place| {
                 let [column, row] = [0, 1].map(|axis| (place[axis] as usize * coarse[axis] / fine[axis]) as i64);
                 coarser.find(column, row)
             });
-            let start = if rank == 0 {
-                Some(0)
-            } else if rank == last || tile >= finer.len() {
-                None
-            } else {
-                over
+            next = match over {
+                _ if rank == 0 => 0,
+                // Where the order of the levels differs, a range may be empty.
+                Some(over) => over.map_or(next, |over| over.max(next)),
+                None => coarser.len(),
             };
-            // Beyond the last tile, or where the order of the levels differs, a range may be empty.
-            next = start.unwrap_or(if tile >= finer.len() { coarser.len() } else { next }).max(next);
             next
         };
         Self { starts: self.starts.iter().enumerate().map(start).collect() }

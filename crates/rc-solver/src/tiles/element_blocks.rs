@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use rc_core::{Grid, Observer, Snapshot};
-use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE};
+use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, Elements, TILE};
 
 use crate::descent::layout::BlockLayout;
 use crate::descent::observed::ObservedMesh;
@@ -24,15 +24,17 @@ impl Mesh {
         if self.levels().len() == 1 {
             return layout;
         }
-        let areas = self.blocks().into_iter().map(|(coarser, _)| Elements::area(coarser));
+        let areas = self.own_levels().flat_map(|(coarser, places, _)| {
+            std::iter::repeat_n(Elements::area(coarser), places.len().div_ceil(BLOCK_TILES))
+        });
         layout.with_areas(areas.collect())
     }
 }
 
 impl ObservedMesh for Mesh {
-    /// Shows the pressure to the observer. Over ranks no rank has the whole pressure, and nothing is shown.
+    /// Shows the pressure to the observer, if this rank has the whole pressure.
     fn show_pressure(&self, pressure: &[f64], observer: &dyn Observer) {
-        if !self.ranks().are_alone() {
+        if self.n_own() < self.len() {
             return;
         }
         let [nx, ny] = self.coarsest().sides();

@@ -76,8 +76,7 @@ pub(crate) fn possible_contact(
     // Each rank checks some tiles of the base grid.
     let own = Deal::equal(base.len(), ranks).range(ranks.rank());
     let tiles: Vec<Vec<[u32; 2]>> = base.places()[own].par_iter().map(of_tile).collect();
-    let tiles = ranks.concatenate(tiles.into_iter().flatten().flatten().collect());
-    tiles.as_chunks::<2>().0.to_vec()
+    ranks.concatenate(tiles.into_iter().flatten().collect())
 }
 
 /// The cells of the base grid over tiles of a level.

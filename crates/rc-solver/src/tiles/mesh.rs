@@ -3,34 +3,36 @@
 use std::borrow::Cow;
 use std::ops::{Deref, Range};
 
-use rc_comm::{Packed, Ranks};
+use rc_comm::Ranks;
 use rc_quadtree::{CELLS, Elements, TileSet};
 
 use crate::tiles::deal::Deal;
-use crate::tiles::part::{Part, append_around};
+use crate::tiles::part::{Part, append_around, pack_tile, unpack_tiles};
 
 /// The elements of a mesh, which all ranks know, and those that this rank has.
 ///
-/// A vector has a value for each element that this rank has. A single rank has all elements. Over ranks, all elements
-/// have one size.
+/// A vector has a value for each element that this rank has. The tiles of the finest level are dealt among ranks. There
+/// are larger elements only if a single rank has the whole mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct Mesh {
     elements: Elements,
     ranks: Ranks,
+    /// The tiles of the finest level that this rank has.
+    own_tiles: Range<usize>,
 }
 
 /// Values on the elements that a rank has and on those around them.
 pub(crate) struct Surroundings<'a> {
     pub(crate) elements: Cow<'a, Elements>,
     pub(crate) values: Cow<'a, [f64]>,
-    /// The first own tile of the finest level.
-    first: usize,
+    /// The own tiles of the finest level.
+    pub(crate) own_tiles: Range<usize>,
 }
 
 impl From<Elements> for Mesh {
     /// A mesh whose elements all belong to this rank.
     fn from(elements: Elements) -> Self {
-        Self { elements, ranks: Ranks::alone() }
+        Self::new(elements, &Ranks::alone())
     }
 }
 
@@ -45,8 +47,9 @@ impl Deref for Mesh {
 impl Mesh {
     /// A mesh whose elements are dealt anew.
     pub(crate) fn new(elements: Elements, ranks: &Ranks) -> Self {
-        debug_assert!(ranks.are_alone() || elements.levels().len() == 1, "elements of one size");
-        Self { elements, ranks: ranks.clone() }
+        debug_assert!(ranks.size() == 1 || elements.levels().len() == 1, "elements of one size");
+        let own_tiles = Deal::equal(elements.finest().len(), ranks).range(ranks.rank());
+        Self { elements, ranks: ranks.clone(), own_tiles }
     }
 
     /// The ranks.
@@ -64,18 +67,10 @@ impl Mesh {
         Deal::equal(self.finest().len(), &self.ranks)
     }
 
-    /// The tiles of the finest level that this rank has.
-    pub(crate) fn own_tiles(&self) -> Range<usize> {
-        self.deal().range(self.ranks.rank())
-    }
-
     /// The range of the values that this rank has among those of the whole mesh.
     pub(crate) fn own(&self) -> Range<usize> {
-        if self.ranks.are_alone() {
-            return 0..self.elements.len();
-        }
-        let tiles = self.own_tiles();
-        tiles.start * CELLS..tiles.end * CELLS
+        let after = self.finest().len() - self.own_tiles.end;
+        self.own_tiles.start * CELLS..self.elements.len() - after * CELLS
     }
 
     /// Number of values that this rank has.
@@ -88,121 +83,106 @@ impl Mesh {
     /// Each comes with its coarseness relative to the finest, the places of its own tiles, and the range of their
     /// values in vectors.
     pub(crate) fn own_levels(&self) -> impl Iterator<Item = (usize, &[[u32; 2]], Range<usize>)> {
-        let levels = self.levels().iter().enumerate();
-        levels.map(|(coarser, tiles)| {
-            if self.ranks.are_alone() {
-                (coarser, tiles.places(), self.cells(coarser))
-            } else {
-                (coarser, &tiles.places()[self.own_tiles()], 0..self.n_own())
-            }
+        let first = self.own().start;
+        self.levels().iter().enumerate().map(move |(coarser, tiles)| {
+            let own = if coarser == 0 { self.own_tiles.clone() } else { 0..tiles.len() };
+            let values = [own.start, own.end].map(|tile| self.cells(coarser).start + tile * CELLS - first);
+            (coarser, &tiles.places()[own], values[0]..values[1])
         })
+    }
+
+    /// The places of the tiles of the finest level that this rank has.
+    pub(crate) fn own_places(&self) -> &[[u32; 2]] {
+        &self.finest().places()[self.own_tiles.clone()]
+    }
+
+    /// The elements of this rank alone.
+    fn own_elements(&self) -> Cow<'_, Elements> {
+        if self.n_own() == self.elements.len() {
+            return Cow::Borrowed(&self.elements);
+        }
+        let tiles = self.finest();
+        Cow::Owned(Elements::uniform(tiles.of_same_cell(tiles.sides(), self.own_places().to_vec())))
     }
 
     /// Values on the elements of `to`, as [`Elements::moved`] gives them.
     ///
-    /// Over ranks they go to the ranks that have the tiles there.
+    /// They go to the ranks that have the tiles there. All ranks call this together.
     pub(crate) fn moved(&self, to: &Self, values: &[f64], elsewhere: f64) -> Vec<f64> {
-        if self.ranks.are_alone() {
-            return self.elements.moved(&to.elements, values, elsewhere);
-        }
-        let places = &self.finest().places()[self.own_tiles()];
-        to.delivered(places.iter().copied().zip(values.chunks_exact(CELLS)), elsewhere)
+        let mut result = self.own_elements().moved(&to.own_elements(), values, elsewhere);
+        let own = self.own_places().iter().copied().zip(values.as_chunks().0);
+        to.deliver(own.filter(|&(place, _)| to.own_tile(place).is_none()), &mut result);
+        result
+    }
+
+    /// The index of a tile of the finest level among those that this rank has.
+    fn own_tile(&self, [column, row]: [u32; 2]) -> Option<usize> {
+        let tile = self.finest().find(column.into(), row.into()).filter(|tile| self.own_tiles.contains(tile))?;
+        Some(tile - self.own_tiles.start)
     }
 
     /// The mesh of the tiles for which `wanted` is true.
     ///
-    /// `wanted` gets the sides of the level in cells, the place, and the range of the values.
+    /// `wanted` gets the sides of the level in cells, the place, and the range of the values. All ranks call this
+    /// together.
     pub(crate) fn chosen(&self, wanted: impl Fn([usize; 2], [u32; 2], Range<usize>) -> bool) -> Self {
-        if self.ranks.are_alone() {
-            return self.elements.filtered(wanted).into();
-        }
-        let (sides, own) = (self.finest().sides(), self.own_tiles());
-        let tiles = self.finest().places()[own].iter().enumerate();
-        let chosen = tiles.filter(|&(tile, &place)| wanted(sides, place, tile * CELLS..(tile + 1) * CELLS));
-        let places = chosen.map(|(_, &place)| place).collect();
-        let tiles = Self::tiles_of_places(sides, places, &self.ranks).with_boundary(self.finest().boundary());
-        Self::new(Elements::uniform(tiles), &self.ranks)
+        let levels = self.own_levels().map(|(coarser, places, values)| {
+            let tiles = &self.levels()[coarser];
+            let chosen = places.iter().zip(values.step_by(CELLS));
+            let chosen = chosen.filter(|&(&place, first)| wanted(tiles.sides(), place, first..first + CELLS));
+            let chosen = chosen.map(|(&place, _)| place).collect();
+            tiles.of_same_cell(tiles.sides(), self.ranks.concatenate(chosen))
+        });
+        Self::new(Elements::new(levels.collect()), &self.ranks)
     }
 
-    /// A vector from tiles of any rank, with `elsewhere` on all others.
+    /// Puts tiles of any rank into the vectors of the ranks that have them.
     ///
     /// Tiles that the mesh does not have are dropped. All ranks call this together.
-    pub(crate) fn delivered<'v>(&self, tiles: impl Iterator<Item = ([u32; 2], &'v [f64])>, elsewhere: f64) -> Vec<f64> {
-        let (deal, own) = (self.deal(), self.own_tiles());
-        let mut result = vec![elsewhere; self.n_own()];
+    pub(crate) fn deliver<'v>(&self, tiles: impl Iterator<Item = ([u32; 2], &'v [f64; CELLS])>, vector: &mut [f64]) {
+        let deal = self.deal();
         let mut outgoing = vec![Vec::new(); self.ranks.size()];
-        for ([column, row], values) in tiles {
-            let Some(tile) = self.finest().find(column.into(), row.into()) else { continue };
-            if own.contains(&tile) {
-                result[(tile - own.start) * CELLS..][..CELLS].copy_from_slice(values);
-            } else {
-                let message = &mut outgoing[deal.owner(tile)];
-                u64::pack(&[tile as u64], message);
-                f64::pack(values, message);
+        for (place, values) in tiles {
+            if let Some(tile) = self.own_tile(place) {
+                vector[tile * CELLS..][..CELLS].copy_from_slice(values);
+            } else if let Some(tile) = self.finest().find(place[0].into(), place[1].into()) {
+                pack_tile(place, values, &mut outgoing[deal.owner(tile)]);
             }
         }
         for bytes in self.ranks.exchange_all(outgoing) {
-            for message in bytes.chunks_exact(u64::BYTES + CELLS * f64::BYTES) {
-                let mut tile = [0];
-                u64::unpack(message, &mut tile);
-                f64::unpack(&message[u64::BYTES..], &mut result[(tile[0] as usize - own.start) * CELLS..][..CELLS]);
+            for (place, values) in unpack_tiles(&bytes) {
+                let tile = self.own_tile(place).expect("tiles are sent to the rank that has them");
+                vector[tile * CELLS..][..CELLS].copy_from_slice(&values);
             }
         }
-        result
     }
 
     /// A vector with the values of the neighbours of all own tiles.
     ///
     /// All ranks call this together.
     pub(crate) fn surroundings<'a>(&'a self, values: &'a [f64]) -> Surroundings<'a> {
-        if self.ranks.are_alone() {
-            let (elements, values) = (Cow::Borrowed(&self.elements), Cow::Borrowed(values));
-            return Surroundings { elements, values, first: 0 };
-        }
-        let part = self.part();
-        let mut all = vec![0.0; part.n_cells()];
-        all[part.own_cells()].copy_from_slice(values);
-        part.exchange(&mut all);
-        let elements = Elements::uniform(part.tiles().clone());
-        Surroundings { elements: Cow::Owned(elements), values: Cow::Owned(all), first: part.own().start }
-    }
-
-    /// The own tiles with their neighbours.
-    fn part(&self) -> Part {
-        let finest = self.finest();
-        let mut around = Vec::new();
-        for &place in &finest.places()[self.own_tiles()] {
-            append_around(&mut around, (place, place), 1, finest.extent());
-        }
-        Part::new(&self.ranks, finest, &self.deal(), around)
+        let (finest, mut around) = (self.finest(), Vec::new());
+        let part = Part::new(&self.ranks, finest, &self.deal(), || {
+            for &place in self.own_places() {
+                append_around(&mut around, (place, place), 1, finest.extent());
+            }
+            around
+        });
+        let elements = if part.tiles().len() == finest.len() {
+            Cow::Borrowed(&self.elements)
+        } else {
+            Cow::Owned(Elements::uniform(part.tiles().clone()))
+        };
+        Surroundings { elements, values: part.exchanged(values), own_tiles: part.own() }
     }
 
     /// The tiles of [`TileSet::on_coarser`], for tiles that all ranks have.
     ///
     /// Each rank checks some of them. All ranks call this together.
     pub(crate) fn on_coarser(&self, tiles: &TileSet, sides: [usize; 2], halo: usize) -> TileSet {
-        if self.ranks.are_alone() {
-            return tiles.on_coarser(sides, halo);
-        }
         let own = Deal::equal(tiles.len(), &self.ranks).range(self.ranks.rank());
-        let own = tiles.of_same_cell(tiles.sides(), tiles.places()[own].to_vec());
-        let mine = own.on_coarser(sides, halo).places().to_vec();
-        Self::tiles_of_places(sides, mine, &self.ranks).with_boundary(tiles.boundary())
-    }
-
-    /// The tiles of all ranks, from the tiles of each.
-    ///
-    /// All ranks call this together.
-    pub(crate) fn tiles_of_places(sides: [usize; 2], mine: Vec<[u32; 2]>, ranks: &Ranks) -> TileSet {
-        let flat = ranks.concatenate(mine.into_iter().flatten().collect());
-        TileSet::new(sides, flat.as_chunks::<2>().0.to_vec())
-    }
-}
-
-impl Surroundings<'_> {
-    /// The own tiles of the finest level.
-    pub(crate) fn own_tiles(&self, mesh: &Mesh) -> Range<usize> {
-        self.first..self.first + mesh.own_tiles().len()
+        let mine = tiles.on_coarser(&tiles.places()[own], sides, halo).places().to_vec();
+        tiles.of_same_cell(sides, self.ranks.concatenate(mine))
     }
 }
 
@@ -247,7 +227,7 @@ mod tests {
             let mesh = mesh(0.5, 3, &ranks);
             let around = mesh.surroundings(&all[mesh.own()]);
             let of_tile = |&place: &[u32; 2]| around.elements.around(&around.values, 0, place, -1.0);
-            mesh.finest().places()[mesh.own_tiles()].iter().map(of_tile).collect::<Vec<_>>()
+            mesh.own_places().iter().map(of_tile).collect::<Vec<_>>()
         };
         let alone = patches(Ranks::alone());
         for size in [2, 5] {

@@ -1,16 +1,17 @@
 //! The tiles of a level that a rank has, and those that it reads.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use rc_comm::{Packed, Ranks};
-use rc_quadtree::{CELLS, TileSet};
+use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TileSet};
 
 use crate::tiles::deal::Deal;
 
-/// The tiles of a level that a rank has, and those that it reads.
+/// The tiles of a level that a rank has, and those of other ranks that it reads.
 ///
-/// It reads tiles of other ranks. A single rank has all tiles. Values are those of [`Part::tiles`]. The own values are
-/// in one piece, since a rank has a range of the curve that tiles are sorted along.
+/// Values are those of [`Part::tiles`]. The own values are in one piece, since a rank has a range of the curve that
+/// tiles are sorted along. A single rank has all tiles and reads no others.
 #[derive(Debug)]
 pub(crate) struct Part {
     ranks: Ranks,
@@ -30,35 +31,37 @@ impl Part {
 
     /// The tiles of `level` that this rank has, and those that it reads.
     ///
-    /// It reads the tiles at the `read` places, where there are tiles. All ranks call this together.
-    pub(crate) fn new(ranks: &Ranks, level: &TileSet, deal: &Deal, read: Vec<[u32; 2]>) -> Self {
+    /// It reads the tiles at the places of `read`, where there are tiles. The places are only computed if other ranks
+    /// have tiles. All ranks call this together.
+    pub(crate) fn new(ranks: &Ranks, level: &TileSet, deal: &Deal, read: impl FnOnce() -> Vec<[u32; 2]>) -> Self {
         let own = deal.range(ranks.rank());
-        let find = |place: [u32; 2]| level.find(place[0].into(), place[1].into());
-        let mut places = read;
-        places.retain(|&place| find(place).is_some());
-        places.extend_from_slice(&level.places()[own.clone()]);
-        let tiles = level.of_same_cell(level.sides(), places);
-        let first = level.places().get(own.start).filter(|_| !own.is_empty());
-        let first = first.and_then(|place| tiles.find(place[0].into(), place[1].into())).unwrap_or(0);
+        let find = |tiles: &TileSet, place: [u32; 2]| tiles.find(place[0].into(), place[1].into());
+        let tiles = if own.len() == level.len() {
+            level.clone()
+        } else {
+            let mut places = read();
+            places.retain(|&place| find(level, place).is_some());
+            places.extend_from_slice(&level.places()[own.clone()]);
+            level.of_same_cell(level.sides(), places)
+        };
+        let first = level.places()[own.clone()].first().and_then(|&place| find(&tiles, place)).unwrap_or(0);
+        let here = first..first + own.len();
         let mut received: Vec<(usize, Vec<usize>)> = Vec::new();
         let mut wanted = vec![Vec::new(); ranks.size()];
-        for (here, tile) in tiles.places().iter().enumerate().filter_map(|(here, &place)| Some((here, find(place)?))) {
-            if own.contains(&tile) {
-                continue;
-            }
+        for other in (0..here.start).chain(here.end..tiles.len()) {
+            let tile = find(level, tiles.places()[other]).expect("all tiles are of the level");
             let owner = deal.owner(tile);
             u64::pack(&[tile as u64], &mut wanted[owner]);
             // Owners follow each other in the order of tiles.
             match received.last_mut().filter(|(rank, _)| *rank == owner) {
-                Some((_, tiles)) => tiles.push(here),
-                None => received.push((owner, vec![here])),
+                Some((_, tiles)) => tiles.push(other),
+                None => received.push((owner, vec![other])),
             }
         }
         let asked = ranks.exchange_all(wanted).into_iter().map(|bytes| u64::unpack_all(&bytes));
-        let here = |tile: u64| first + (tile as usize - own.start);
-        let sent = asked.map(|tiles| tiles.into_iter().map(here).collect::<Vec<_>>()).enumerate();
-        let sent = sent.filter(|(_, tiles)| !tiles.is_empty()).collect();
-        Self { ranks: ranks.clone(), tiles, own: first..first + own.len(), sent, received }
+        let asked = asked.map(|tiles| tiles.into_iter().map(|tile| first + (tile as usize - own.start)).collect());
+        let sent = asked.enumerate().filter(|(_, tiles): &(usize, Vec<usize>)| !tiles.is_empty()).collect();
+        Self { ranks: ranks.clone(), tiles, own: here, sent, received }
     }
 
     /// The tiles of the values.
@@ -86,13 +89,23 @@ impl Part {
         self.tiles.n_cells()
     }
 
+    /// The values of all tiles, from the own values.
+    ///
+    /// All ranks call this together.
+    pub(crate) fn exchanged<'a>(&self, own: &'a [f64]) -> Cow<'a, [f64]> {
+        if self.sent.is_empty() && self.received.is_empty() {
+            return Cow::Borrowed(own);
+        }
+        let mut all = vec![0.0; self.n_cells()];
+        all[self.own_cells()].copy_from_slice(own);
+        self.exchange(&mut all);
+        Cow::Owned(all)
+    }
+
     /// Fills in the values of tiles that other ranks have.
     ///
     /// All ranks call this together.
     pub(crate) fn exchange<T: Packed>(&self, values: &mut [T]) {
-        if self.ranks.are_alone() {
-            return;
-        }
         let message = |(rank, tiles): &(usize, Vec<usize>)| {
             let mut bytes = Vec::with_capacity(tiles.len() * CELLS * T::BYTES);
             for tile in tiles {
@@ -108,6 +121,38 @@ impl Part {
             }
         }
     }
+}
+
+/// Appends a tile to a message.
+pub(crate) fn pack_tile(place: [u32; 2], values: &[f64; CELLS], message: &mut Vec<u8>) {
+    Packed::pack(&place, message);
+    Packed::pack(values, message);
+}
+
+/// The tiles of a message.
+pub(crate) fn unpack_tiles(message: &[u8]) -> impl Iterator<Item = ([u32; 2], [f64; CELLS])> {
+    message.chunks_exact(<[u32; 2]>::BYTES + <[f64; CELLS]>::BYTES).map(|tile| {
+        let (mut place, mut values) = ([0; 2], [0.0; CELLS]);
+        u32::unpack(tile, &mut place);
+        f64::unpack(&tile[<[u32; 2]>::BYTES..], &mut values);
+        (place, values)
+    })
+}
+
+/// Tiles block by block. There may be more values than tiles.
+pub(crate) fn blocks<'a, T>(
+    places: &'a [[u32; 2]],
+    cells: &'a mut [T],
+) -> impl Iterator<Item = (&'a [[u32; 2]], &'a mut [T])> {
+    places.chunks(BLOCK_TILES).zip(cells.chunks_mut(BLOCK_CELLS))
+}
+
+/// The own tiles of a level, block by block, from the values of all tiles.
+pub(crate) fn own_blocks<'a, T>(
+    part: &'a Part,
+    cells: &'a mut [T],
+) -> impl Iterator<Item = (&'a [[u32; 2]], &'a mut [T])> {
+    blocks(part.own_places(), &mut cells[part.own_cells()])
 }
 
 /// Appends the places at most `margin` tiles from a square of tiles.

@@ -9,7 +9,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 use rc_comm::Ranks;
 use rc_core::Grid;
-use rc_quadtree::{CELLS, Elements, TILE, TileSet, prolong, prolong_onto, prolong_some};
+use rc_quadtree::{CELLS, Elements, TILE, TileSet, prolong, prolong_onto};
 
 use crate::grid::prolongation::edge_function_outside;
 use crate::tiles::deal::Deal;
@@ -63,8 +63,7 @@ pub(crate) fn refine_all(mesh: &Mesh, function: &[f64], grid: Grid) -> MeshStart
     let elsewhere = far_from_contact(function, mesh.ranks());
     let around = mesh.surroundings(function);
     let tiles = around.elements.finest();
-    let own = around.own_tiles(mesh);
-    refined(tiles, own, (&around.values, elsewhere), grid, mesh.ranks())
+    refined(tiles, around.own_tiles.clone(), (&around.values, elsewhere), grid, mesh.ranks())
 }
 
 /// The start under the `own` tiles among `tiles`.
@@ -76,17 +75,12 @@ fn refined(
     ranks: &Ranks,
 ) -> MeshStart {
     let sides = sides_of(grid);
-    if ranks.are_alone() {
-        let (fine, mut pressure) = prolong(tiles, function, elsewhere, sides);
-        to_pressure(&mut pressure);
-        return MeshStart { elements: Elements::uniform(fine).into(), pressure };
-    }
-    let children = prolong_some(tiles, own, function, elsewhere);
+    let children = prolong(tiles, own, function, elsewhere, sides);
     let places = children.iter().map(|(place, _)| *place).collect();
-    let fine = Mesh::tiles_of_places(sides, places, ranks).with_boundary(tiles.boundary());
+    let fine = tiles.of_same_cell(sides, ranks.concatenate(places));
     let elements = Mesh::new(Elements::uniform(fine), ranks);
-    let tiles = children.iter().map(|(place, values)| (*place, values.as_slice()));
-    let mut pressure = elements.delivered(tiles, 0.0);
+    let mut pressure = vec![0.0; elements.n_own()];
+    elements.deliver(children.iter().map(|(place, values)| (*place, &**values)), &mut pressure);
     to_pressure(&mut pressure);
     MeshStart { elements, pressure }
 }

@@ -35,7 +35,7 @@ impl<'a, T: Real + Into<f64>> ScaledOperator<'a, T> {
     /// subtracted if elements cover the cell. Far beyond full contact, the mean is much larger than the pressure from
     /// the heights. Its rounding and its part of the split kernel's error would then be larger than that pressure.
     pub(crate) fn new(hierarchy: Arc<Hierarchy>, tables: &'a Tables<T>, mean: f64, size: f64) -> Self {
-        let reference = if hierarchy.elements().cover_cell() { mean } else { 0.0 };
+        let reference = if hierarchy.cover_period() { mean } else { 0.0 };
         Self { operator: TileOperator::new(hierarchy), tables, reference, unit: power_of_two_near(size) }
     }
 

@@ -16,9 +16,8 @@ use crate::solution::contact_area::plastic::PlasticEdges;
 use crate::solution::contact_element::ContactElement;
 use crate::solution::observables::Observables;
 use crate::solution::stiffness::{elastic_part, stiffness_pressure, stiffness_under};
-use crate::tiles::bands::{Receiver, Rows, TilesByRow, bands, hand_out};
+use crate::tiles::bands::{Receiver, Rows, bands, hand_out};
 use crate::tiles::base::Base;
-use crate::tiles::ladder::sides_of;
 use crate::tiles::mesh::Mesh;
 use crate::tiles::operator::corrections::{TileCorrections, TileResponse};
 use crate::tiles::operator::hierarchy::Hierarchy;
@@ -109,37 +108,16 @@ impl AdaptiveSolution {
 
     /// Tiles of the grid, and the mean pressure on its cells.
     pub(crate) fn on_grid(&self) -> (Mesh, Cow<'_, [f64]>) {
-        if !self.elements.ranks().are_alone() {
-            return (self.elements.clone(), Cow::Borrowed(&self.pressure));
-        }
         let (tiles, pressure) = self.elements.on_coarsest(&self.pressure);
-        (Elements::uniform(tiles).into(), pressure)
+        (Mesh::new(Elements::uniform(tiles), self.elements.ranks()), pressure)
     }
 
     /// Tiles of the smallest elements wherever there are elements, and the pressure on them.
     ///
     /// A larger element stands for its parts.
     pub(crate) fn on_finest(&self) -> (Mesh, Cow<'_, [f64]>) {
-        let levels = self.elements.levels();
-        let parts = |coarser: usize, tile: usize| {
-            let [column, row] = levels[coarser].places()[tile].map(|i| i << coarser);
-            let across = 1_u32 << coarser;
-            (0..across * across).map(move |i| [column + i % across, row + i / across])
-        };
-        let places = self.elements.tiles().flat_map(|(coarser, tile, _)| parts(coarser, tile)).collect();
-        let tiles = self.elements.finest().of_same_cell(sides_of(self.finest), places);
-        let mut values = vec![0.0; Elements::uniform(tiles.clone()).len()];
-        for (coarser, tile, start) in self.elements.tiles() {
-            for place in parts(coarser, tile) {
-                let Some(part) = tiles.find(place[0].into(), place[1].into()) else { continue };
-                // The cell of the larger tile that is over cell i of the part, along one side.
-                let over = |place: u32, i: usize| ((place as usize * TILE + i) >> coarser) % TILE;
-                for (cell, value) in values[part * CELLS..][..CELLS].iter_mut().enumerate() {
-                    *value = self.pressure[start + over(place[1], cell / TILE) * TILE + over(place[0], cell % TILE)];
-                }
-            }
-        }
-        (Elements::uniform(tiles).into(), Cow::Owned(values))
+        let (tiles, pressure) = self.elements.on_finest(&self.pressure);
+        (Mesh::new(Elements::uniform(tiles), self.elements.ranks()), pressure)
     }
 
     /// Hands out the pressure on the grid in order, eight rows at a time.
@@ -155,14 +133,7 @@ impl AdaptiveSolution {
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
         let (mesh, pressure) = self.on_grid();
-        let (tiles, ranks) = (mesh.finest(), mesh.ranks());
-        let own = &tiles.places()[mesh.own_tiles()];
-        let by_row = TilesByRow::new(own);
-        for (band, to) in bands(tiles, ranks, receiver) {
-            let of_band = by_row.of(&band).map(|tile| (own[tile], &pressure[tile * CELLS..][..CELLS]));
-            hand_out((tiles, ranks), (band.clone(), to), of_band, &mut take)?;
-        }
-        Ok(())
+        bands(&mesh, receiver).try_for_each(|band| hand_out((&mesh, &pressure), band, &mut take))
     }
 
     /// Hands out the displacement v of the grid's pressure, rows of tiles at a time.
@@ -180,14 +151,14 @@ impl AdaptiveSolution {
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
         let (own, pressure) = if rows.finest { self.on_finest() } else { self.on_grid() };
-        let (own_tiles, ranks) = (own.finest(), own.ranks());
-        let ([nx, ny], [columns, _]) = (own_tiles.sides(), own_tiles.extent());
+        let (own_tiles, [columns, _]) = (own.finest(), own.finest().extent());
         let prepared = kernels.response();
         let tables = prepared.tables(if rows.finest { self.finest } else { self.grid });
-        for (band, to) in bands(own_tiles, ranks, rows.receiver) {
+        for (band, to) in bands(&own, rows.receiver) {
             let more = band.clone().flat_map(|row| (0..columns).map(move |column| [column as u32, row as u32]));
-            let tiles = own_tiles.of_same_cell([nx, ny], own_tiles.places().iter().copied().chain(more).collect());
-            let mesh = Mesh::new(Elements::uniform(tiles), ranks);
+            let tiles =
+                own_tiles.of_same_cell(own_tiles.sides(), own_tiles.places().iter().copied().chain(more).collect());
+            let mesh = Mesh::new(Elements::uniform(tiles), own.ranks());
             let hierarchy = Arc::new(Hierarchy::new(self.base, mesh.clone(), prepared.reach()));
             let mut values = own.moved(&mesh, &pressure, 0.0);
             // If the pressure is on a part of the cell, the mean over the whole cell does not tell its size.
@@ -197,10 +168,7 @@ impl AdaptiveSolution {
             write_blocks(&mut fresh, values.chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
             fresh.apply();
             read_blocks(&fresh, values.chunks_mut(BLOCK_CELLS), |v, cells| v.copy_from_slice(cells));
-            let places = &mesh.finest().places()[mesh.own_tiles()];
-            let by_row = TilesByRow::new(places);
-            let of_band = by_row.of(&band).map(|tile| (places[tile], &values[tile * CELLS..][..CELLS]));
-            hand_out((own_tiles, ranks), (band.clone(), to), of_band, &mut take)?;
+            hand_out((&mesh, &values), (band, to), &mut take)?;
         }
         Ok(())
     }

@@ -27,9 +27,9 @@ use crate::tiles::operator::hierarchy::Hierarchy;
 use crate::tiles::operator::interpolation::{cells_over, collect, interpolate};
 use crate::tiles::operator::passes::{ShortRange, Targets};
 use crate::tiles::operator::tables::Tables;
-use crate::tiles::operator::tile_operator::{blocks, own_blocks, rows_to_tiles, tiles_to_rows};
+use crate::tiles::operator::tile_operator::{rows_to_tiles, tiles_to_rows};
 use crate::tiles::operator::tile_values::TileValues;
-use crate::tiles::part::Part;
+use crate::tiles::part::{Part, blocks, own_blocks};
 
 /// Values on the base grid or a level between it and the finest.
 struct Level {
@@ -113,7 +113,7 @@ impl TileExtension {
                 set_base(hierarchy, values, |places, cells| means.set(places, cells));
             } else {
                 let part = &hierarchy.levels[level];
-                parallel::for_each(own_blocks(part, values), |Targets { places, cells }| means.set(places, cells));
+                parallel::for_each(own_blocks(part, values), |(places, cells)| means.set(places, cells));
                 part.exchange(values);
             }
         }
@@ -157,9 +157,13 @@ impl TileExtension {
                 None => (finest, &mut *values),
             };
             let around = TileValues::new(detail, part.tiles());
-            parallel::for_each(blocks(part.own_places(), cells), |targets| {
-                targets.cells.fill(0.0);
-                (tables.sizes.passes.add_stencil)(arch, &ShortRange { taps, values: around }, targets);
+            parallel::for_each(blocks(part.own_places(), cells), |(places, cells)| {
+                cells.fill(0.0);
+                (tables.sizes.passes.add_stencil)(
+                    arch,
+                    &ShortRange { taps, values: around },
+                    Targets { places, cells },
+                );
             });
         }
     }
@@ -199,7 +203,7 @@ impl TileExtension {
             let (part, own) = (&hierarchy.levels[level], hierarchy.levels[level].own_cells());
             let others = parts.rest[own.clone()].chunks(BLOCK_CELLS).zip(pressure[own.clone()].chunks(BLOCK_CELLS));
             let blocks = own_blocks(part, values).zip(detail[own].chunks_mut(BLOCK_CELLS)).zip(others);
-            parallel::for_each(blocks, |((Targets { places, cells: values }, given), (rest, pressure))| {
+            parallel::for_each(blocks, |(((places, values), given), (rest, pressure))| {
                 collect(finer, places, values);
                 for ((value, given), (rest, pressure)) in values.iter_mut().zip(given).zip(rest.iter().zip(pressure)) {
                     *value += pressure;
@@ -236,7 +240,7 @@ impl TileExtension {
         for (level, here) in self.levels.iter().enumerate().skip(1) {
             let Some((range, leaves)) = self.hierarchy.elements_of(level) else { continue };
             let blocks = blocks(leaves.places(), &mut values[range.clone()]).zip(active[range].chunks(BLOCK_CELLS));
-            parallel::for_each(blocks, |(Targets { places, cells: values }, active)| {
+            parallel::for_each(blocks, |((places, values), active)| {
                 let cells = values.as_chunks_mut::<CELLS>().0.iter_mut().zip(active.chunks(CELLS));
                 for (&place, (cells, active)) in places.iter().zip(cells) {
                     let found = TileValues::new(&here.values, tiles[level].tiles()).tile(place);
@@ -268,7 +272,7 @@ fn blend(
     (values, detail): (&mut [f32], &mut [f32]),
 ) {
     let blocks = blocks(places, values).zip(detail.chunks_mut(BLOCK_CELLS)).enumerate();
-    parallel::for_each(blocks, |(block, (Targets { places, cells: values }, detail))| {
+    parallel::for_each(blocks, |(block, ((places, values), detail))| {
         let mut around = [0.0; CELLS];
         let cells = values.as_chunks_mut::<CELLS>().0.iter_mut().zip(detail.as_chunks_mut::<CELLS>().0);
         for (i, (&place, (values, detail))) in places.iter().zip(cells).enumerate() {
@@ -286,7 +290,7 @@ fn blend(
 
 /// Changes values for u on tiles to those for own values.
 fn add_cells_over(places: &[[u32; 2]], coarser: TileValues<'_, f32>, shares: Shares<'_>, values: &mut [f32]) {
-    parallel::for_each(blocks(places, values).enumerate(), |(block, Targets { places, cells: values })| {
+    parallel::for_each(blocks(places, values).enumerate(), |(block, (places, values))| {
         for (i, (&place, values)) in places.iter().zip(values.as_chunks_mut::<CELLS>().0).enumerate() {
             shares.part(cells_of(block * BLOCK_TILES + i)).hand_down(&cells_over(coarser, place), values);
         }

@@ -6,21 +6,14 @@ use rc_quadtree::{CELLS, means_of_quarter, quarters};
 
 use crate::parallel;
 use crate::tiles::operator::hierarchy::Hierarchy;
-use crate::tiles::operator::passes::Targets;
-use crate::tiles::operator::tile_operator::blocks;
 use crate::tiles::operator::tile_values::TileValues;
+use crate::tiles::part::blocks;
 
 /// Sets the values of the base grid. Each rank sets those of its tiles.
 pub(super) fn set_base(hierarchy: &Hierarchy, base: &mut [f32], set: impl Fn(&[[u32; 2]], &mut [f32]) + Sync) {
+    let values = hierarchy.base_part.values(set);
     let places = hierarchy.levels[0].tiles().places();
-    let Some(part) = &hierarchy.base_part else {
-        parallel::for_each(blocks(places, base), |Targets { places, cells }| set(places, cells));
-        return;
-    };
-    let mut own = vec![0.0; part.own_places().len() * CELLS];
-    parallel::for_each(blocks(part.own_places(), &mut own), |Targets { places, cells }| set(places, cells));
-    let gathered = part.gathered(own);
-    parallel::for_each(blocks(places, base), |Targets { places, cells }| part.copy(&gathered, places, cells));
+    parallel::for_each(blocks(places, base), |(places, cells)| values.copy(places, cells));
 }
 
 /// Means over the cells of a level.

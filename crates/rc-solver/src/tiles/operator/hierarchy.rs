@@ -20,7 +20,9 @@ pub(crate) struct Hierarchy {
     base: Base,
     reach: Reach,
     mesh: Mesh,
-    /// The elements, on levels that have the operator's period.
+    /// The elements that operators keep values for, on levels that have the operator's period.
+    ///
+    /// They are those of this rank, and those of other ranks that it reads.
     elements: Elements,
     /// The blocks of a vector: their coarseness and their tiles.
     ///
@@ -30,8 +32,8 @@ pub(crate) struct Hierarchy {
     ///
     /// On the finest level they are its elements.
     pub(crate) levels: Vec<Part>,
-    /// The part of the base grid that this rank computes. `None` without other ranks.
-    pub(crate) base_part: Option<BasePart>,
+    /// The part of the base grid that this rank computes.
+    pub(crate) base_part: BasePart,
     /// The elements that are 2, 4, … times as large as the finest.
     pub(crate) leaves: Vec<Leaves>,
 }
@@ -70,11 +72,15 @@ impl Hierarchy {
         debug_assert!(elements.levels().len() < levels.len(), "no elements are on the base grid");
         let pairs = elements.levels().windows(2);
         let leaves = pairs.map(|pair| Leaves::new(pair[1].clone(), &pair[0], reach.stencil)).collect();
-        let (levels, base_part) = dealt(levels, &mesh, reach);
-        Self { base, reach, blocks: blocks(&mesh, &levels), mesh, elements, levels, base_part, leaves }
+        let (levels, base_part) = dealt(&levels, &mesh, reach);
+        let finest = &levels[levels.len() - 1];
+        let blocks = blocks(&mesh, finest.own().start);
+        let tiles = std::iter::once(finest.tiles()).chain(&elements.levels()[1..]);
+        let elements = Elements::new(tiles.cloned().collect());
+        Self { base, reach, mesh, elements, blocks, levels, base_part, leaves }
     }
 
-    /// The elements, on levels that have the operator's period.
+    /// The elements that operators keep values for, on levels that have the operator's period.
     pub(crate) fn elements(&self) -> &Elements {
         &self.elements
     }
@@ -84,26 +90,20 @@ impl Hierarchy {
         &self.mesh
     }
 
-    /// Number of values that operators keep for elements.
-    ///
-    /// Values of other ranks that this rank reads are included.
-    pub(crate) fn n_values(&self) -> usize {
-        if self.mesh.ranks().are_alone() { self.elements().len() } else { self.finest().n_cells() }
+    /// The range of the own values among those of [`Hierarchy::elements`].
+    pub(crate) fn own_values(&self) -> Range<usize> {
+        let first = self.finest().own_cells().start;
+        first..first + self.mesh.n_own()
     }
 
-    /// The range of the own values among these.
-    pub(crate) fn own_values(&self) -> Range<usize> {
-        if self.mesh.ranks().are_alone() { 0..self.elements().len() } else { self.finest().own_cells() }
+    /// Whether elements cover the operator's period.
+    pub(crate) fn cover_period(&self) -> bool {
+        !self.base.is_free() && self.mesh.cover_cell()
     }
 
     /// The tiles of the finest level.
     pub(crate) fn finest(&self) -> &Part {
         &self.levels[self.n_levels()]
-    }
-
-    /// The range of the values of the finest level among those of elements.
-    pub(crate) fn finest_values(&self) -> Range<usize> {
-        0..self.finest().n_cells()
     }
 
     /// The base grid.
@@ -121,7 +121,8 @@ impl Hierarchy {
             return Arc::clone(self);
         }
         let tiles = finest.of_same_cell(sides, finest.places().to_vec());
-        Arc::new(Self::new(self.base, Elements::uniform(tiles), self.reach))
+        let mesh = Mesh::new(Elements::uniform(tiles), self.mesh.ranks());
+        Arc::new(Self::new(self.base, mesh, self.reach))
     }
 
     /// Number of levels above the base grid.
@@ -132,9 +133,6 @@ impl Hierarchy {
     /// The elements of a level: their range in a vector, and their tiles.
     pub(crate) fn elements_of(&self, level: usize) -> Option<(Range<usize>, &TileSet)> {
         let coarser = self.n_levels() - level;
-        if coarser == 0 && !self.mesh.ranks().are_alone() {
-            return Some((self.finest_values(), self.finest().tiles()));
-        }
         self.elements().levels().get(coarser).map(|tiles| (self.elements().cells(coarser), tiles))
     }
 }
@@ -151,50 +149,50 @@ fn in_period(base: Base, elements: &Elements) -> Elements {
 }
 
 /// The parts of this rank in all levels, coarsest first, and in the base grid.
-fn dealt(levels: Vec<TileSet>, mesh: &Mesh, reach: Reach) -> (Vec<Part>, Option<BasePart>) {
+fn dealt(levels: &[TileSet], mesh: &Mesh, reach: Reach) -> (Vec<Part>, BasePart) {
     let ranks = mesh.ranks();
-    if ranks.are_alone() {
-        return (levels.into_iter().map(Part::whole).collect(), None);
-    }
     // Tiles around one tile on its level or a coarser one, and around the four tiles under one.
     let near = reach.filter.max(reach.stencil).div_ceil(TILE);
     let under = (2 * reach.filter).div_ceil(TILE);
     // The tiles of the base grid that have a density.
     let active = mesh.on_coarser(&levels[1], levels[0].sides(), under * TILE / 2);
+    let with_density = |level: usize| if level == 0 { &active } else { &levels[level] };
     let mut deals = vec![mesh.deal()];
     for finer in (1..levels.len()).rev() {
-        let coarser = if finer == 1 { &active } else { &levels[finer - 1] };
-        deals.push(deals[deals.len() - 1].of_coarser(&levels[finer], coarser));
+        deals.push(deals[deals.len() - 1].of_coarser(&levels[finer], with_density(finer - 1)));
     }
     deals.reverse();
-    let own = |level: usize| {
-        let tiles = if level == 0 { &active } else { &levels[level] };
-        &tiles.places()[deals[level].range(ranks.rank())]
-    };
-    let mut parts = vec![Part::whole(levels[0].clone())];
-    for level in 1..levels.len() {
+    let own = |level: usize| &with_density(level).places()[deals[level].range(ranks.rank())];
+    let part = |level: usize| {
         let (extent, mut read) = (levels[level].extent(), Vec::new());
-        for &place in own(level) {
-            append_around(&mut read, (place, place), near, extent);
-        }
-        for &place in if level + 1 < levels.len() { own(level + 1) } else { &[] } {
-            let over = place.map(|i| i / 2);
-            append_around(&mut read, (over, over), near, extent);
-        }
-        for &place in own(level - 1) {
-            append_around(&mut read, (place.map(|i| 2 * i), place.map(|i| 2 * i + 1)), under, extent);
-        }
-        parts.push(Part::new(ranks, &levels[level], &deals[level], read));
-    }
+        Part::new(ranks, &levels[level], &deals[level], || {
+            for &place in own(level) {
+                append_around(&mut read, (place, place), near, extent);
+            }
+            for &place in if level + 1 < levels.len() { own(level + 1) } else { &[] } {
+                let over = place.map(|i| i / 2);
+                append_around(&mut read, (over, over), near, extent);
+            }
+            for &place in own(level - 1) {
+                append_around(&mut read, (place.map(|i| 2 * i), place.map(|i| 2 * i + 1)), under, extent);
+            }
+            read
+        })
+    };
+    let parts = std::iter::once(Part::whole(levels[0].clone())).chain((1..levels.len()).map(part)).collect();
     let own = deals[0].range(ranks.rank());
-    (parts, Some(BasePart::new(ranks, active, own)))
+    (parts, BasePart::new(ranks, active, own))
 }
 
-/// The blocks of this rank's vectors.
-fn blocks(mesh: &Mesh, levels: &[Part]) -> Vec<(usize, Range<usize>)> {
-    if mesh.ranks().are_alone() {
-        return mesh.blocks();
-    }
-    let own = levels[levels.len() - 1].own();
-    own.clone().step_by(BLOCK_TILES).map(|first| (0, first..(first + BLOCK_TILES).min(own.end))).collect()
+/// The blocks of this rank's vectors. `first` is the index of its first tile of the finest level.
+fn blocks(mesh: &Mesh, first: usize) -> Vec<(usize, Range<usize>)> {
+    let levels = mesh.own_levels().map(|(coarser, places, _)| {
+        let start = if coarser == 0 { first } else { 0 };
+        (coarser, start..start + places.len())
+    });
+    let of_level = |(coarser, tiles): (usize, Range<usize>)| {
+        let end = tiles.end;
+        tiles.step_by(BLOCK_TILES).map(move |tile| (coarser, tile..(tile + BLOCK_TILES).min(end)))
+    };
+    levels.flat_map(of_level).collect()
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use pulp::Arch;
 use rc_fft::{BLOCK_ROWS, Convolution, Instructions};
-use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE};
+use rc_quadtree::{BLOCK_CELLS, CELLS, TILE};
 
 use crate::descent::layout::BlockLayout;
 use crate::grid::passes::{read_rows, write_rows};
@@ -23,7 +23,7 @@ use crate::tiles::operator::passes::{
 use crate::tiles::operator::sizes::Real;
 use crate::tiles::operator::tables::Tables;
 use crate::tiles::operator::tile_values::TileValues;
-use crate::tiles::part::Part;
+use crate::tiles::part::{Part, blocks, own_blocks};
 
 /// Buffers for operators on one hierarchy.
 ///
@@ -65,7 +65,7 @@ impl<T: Real> TileOperator<T> {
             self.densities = below_finest.iter().map(zeros).collect();
             self.displacements = below_finest.iter().map(zeros).collect();
             self.ghosts = hierarchy.leaves.iter().map(|leaves| vec![T::default(); leaves.ghosts.n_cells()]).collect();
-            self.source = vec![T::default(); hierarchy.n_values()];
+            self.source = vec![T::default(); hierarchy.elements().len()];
         }
     }
 
@@ -141,7 +141,7 @@ impl<T: Real> TileOperator<T> {
         let elements = self.hierarchy.elements();
         for (i, (leaves, ghosts)) in self.hierarchy.leaves.iter().zip(&mut self.ghosts).enumerate() {
             let values = &self.source[elements.cells(i + 1)];
-            parallel::for_each(blocks(leaves.ghosts.places(), ghosts), |Targets { places, cells }| {
+            parallel::for_each(blocks(leaves.ghosts.places(), ghosts), |(places, cells)| {
                 leaves.set_ghosts(values, places, cells);
             });
         }
@@ -156,13 +156,13 @@ impl<T: Real> TileOperator<T> {
             let finer = TileValues::new(finer.first().unwrap_or(&self.source), levels[level + 1].tiles());
             let density = &mut coarser[level];
             parallel::for_each(own_blocks(&levels[level], density), |targets| {
-                restrict(tables, (level, n_levels), finer, (arch, targets));
+                restrict(tables, (level, n_levels), finer, (arch, targets.into()));
             });
             if let Some((cells, tiles)) = self.hierarchy.elements_of(level) {
                 let elements = TileValues::new(&self.source[cells], tiles);
                 let pass = CoarseDensity { table: tables.coarse_table(n_levels - level), elements };
                 parallel::for_each(own_blocks(&levels[level], density), |targets| {
-                    (tables.sizes.passes.add_coarse)(arch, &pass, targets);
+                    (tables.sizes.passes.add_coarse)(arch, &pass, targets.into());
                 });
             }
             levels[level].exchange(density);
@@ -175,21 +175,13 @@ impl<T: Real> TileOperator<T> {
         let finer = TileValues::new(self.densities.get(1).unwrap_or(&self.source), levels[1].tiles());
         let n_levels = self.hierarchy.n_levels();
         let tiles_per_block = BLOCK_ROWS / TILE * (side / TILE);
-        let over_ranks = self.hierarchy.base_part.as_ref().map(|part| {
-            let places = part.own_places();
-            let mut own = vec![T::default(); places.len() * CELLS];
-            parallel::for_each(blocks(places, &mut own), |targets| {
-                restrict(tables, (0, n_levels), finer, (arch, targets));
-            });
-            (part, part.gathered(own))
+        let density = self.hierarchy.base_part.values(|places, cells| {
+            restrict(tables, (0, n_levels), finer, (arch, Targets { places, cells }));
         });
         write_rows(&mut self.convolution, &|i, rows| {
             let mut cells = vec![T::default(); rows.len()];
             let places = &levels[0].tiles().places()[i * tiles_per_block..][..rows.len() / CELLS];
-            match &over_ranks {
-                None => restrict(tables, (0, n_levels), finer, (arch, Targets { places, cells: &mut cells })),
-                Some((part, gathered)) => part.copy(gathered, places, &mut cells),
-            }
+            density.copy(places, &mut cells);
             tiles_to_rows(&cells, rows, side);
         });
         self.convolution.apply_symbol(&tables.base);
@@ -208,7 +200,7 @@ impl<T: Real> TileOperator<T> {
                 coarser: TileValues::new(&coarser[level - 1], levels[level - 1].tiles()),
             };
             parallel::for_each(own_blocks(&levels[level], &mut finer[0]), |targets| {
-                (tables.sizes.passes.displace)(arch, &pass, targets);
+                (tables.sizes.passes.displace)(arch, &pass, targets.into());
             });
             levels[level].exchange(&mut finer[0]);
         }
@@ -217,9 +209,8 @@ impl<T: Real> TileOperator<T> {
     /// Writes the displacement of some tiles of the finest elements.
     fn displace_finest(&self, tables: &Tables<T>, tiles: Range<usize>, cells: &mut [T]) {
         let (levels, level) = (&self.hierarchy.levels, self.hierarchy.n_levels());
-        let finest = self.hierarchy.finest_values();
         let table = &tables.levels[level - 1];
-        let density = TileValues::new(&self.source[finest], levels[level].tiles());
+        let density = TileValues::new(&self.source, levels[level].tiles());
         let coarser = TileValues::new(&self.displacements[level - 1], levels[level - 1].tiles());
         let targets = Targets { places: &levels[level].tiles().places()[tiles], cells };
         if let Some(uneven) = &tables.uneven {
@@ -275,17 +266,6 @@ fn restrict<T: Real>(
         }
         _ => (tables.sizes.passes.restrict)(arch, &Restriction { transfer: &tables.levels[level].1, finer }, targets),
     }
-}
-
-/// The tiles of a level, block by block. There may be more values than tiles.
-pub(crate) fn blocks<'a, T>(places: &'a [[u32; 2]], cells: &'a mut [T]) -> impl Iterator<Item = Targets<'a, T>> {
-    let blocks = cells.chunks_mut(BLOCK_CELLS).zip(places.chunks(BLOCK_TILES));
-    blocks.map(|(cells, places)| Targets { places, cells })
-}
-
-/// The own tiles of a level, block by block, from the values of all tiles.
-pub(crate) fn own_blocks<'a, T>(part: &'a Part, cells: &'a mut [T]) -> impl Iterator<Item = Targets<'a, T>> {
-    blocks(part.own_places(), &mut cells[part.own_cells()])
 }
 
 /// Copies whole rows of tiles to rows of `side` cells.
