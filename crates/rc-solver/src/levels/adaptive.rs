@@ -301,8 +301,7 @@ impl<'a> AdaptiveProblem<'a> {
         assert_eq!(solution.finest_grid(), self.ground.heights.ladder().finest(), "not a solution of this problem");
         let offset = solution.gap_offset(self.h_max());
         let grid = if rows.finest { solution.finest_grid() } else { solution.grid() };
-        let pressure_on = || if rows.finest { solution.on_finest() } else { solution.on_grid() };
-        let of_pressure = solution.hardness.is_finite().then(pressure_on);
+        let of_pressure = solution.hardness.is_finite().then(|| solution.on_one_size(rows.finest));
         solution.displacement_rows(&self.ground.kernels, rows, |first, displacement| {
             let mut rows = self.ground.heights.row_of_tiles(sides_of(grid), first / TILE);
             for (h, v) in rows.iter_mut().zip(displacement) {

@@ -6,7 +6,7 @@ use rc_core::{Grid, Operator};
 use rc_kernel::{ScaleSplit, SplitParams};
 use rc_quadtree::{BLOCK_CELLS, Elements, TILE, TileSet};
 
-use crate::parallel::Tasks;
+use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
 use crate::problem::adaptive_error::AdaptiveError;
 use crate::tiles::operator::hierarchy::Hierarchy;
 use crate::tiles::operator::tables::{Prepared, Tables};
@@ -18,10 +18,9 @@ use crate::tiles::operator::tile_operator::TileOperator;
 /// the number of tiles, plus a Fourier transform of the base grid. Element i is cell i % 64 (row by row) of tile i
 /// / 64.
 pub struct MultilevelOperator {
-    tables: Tables<f64>,
     n_elements: usize,
     places: Vec<[u32; 2]>,
-    operator: Mutex<TileOperator<f64>>,
+    operator: Mutex<TileOperator<f64, Tables<f64>>>,
 }
 
 impl std::fmt::Debug for MultilevelOperator {
@@ -56,8 +55,8 @@ impl MultilevelOperator {
         let tiles = TileSet::new([side, side], places);
         let (n_elements, places) = (tiles.n_cells(), tiles.places().to_vec());
         let hierarchy = Arc::new(Hierarchy::new(base, Elements::uniform(tiles), prepared.reach()));
-        let tables = prepared.tables(grid);
-        Ok(Self { tables, n_elements, places, operator: Mutex::new(TileOperator::new(hierarchy)) })
+        let operator = Mutex::new(TileOperator::new(hierarchy, prepared.tables(grid)));
+        Ok(Self { n_elements, places, operator })
     }
 
     /// Column and row of each tile, in the order of elements.
@@ -80,10 +79,9 @@ impl Operator for MultilevelOperator {
         assert_eq!(pressure.len(), self.n_elements, "one pressure for each element");
         assert_eq!(displacement.len(), self.n_elements, "one displacement for each element");
         let mut operator = self.operator.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        operator.write(&|i, cells| cells.copy_from_slice(&pressure[i * BLOCK_CELLS..][..cells.len()]));
-        operator.apply(&self.tables);
-        let blocks = Tasks::new(displacement.chunks_mut(BLOCK_CELLS));
-        operator.read(&self.tables, &|i, cells| blocks.run(i, |block| block.copy_from_slice(cells)));
+        write_blocks(&mut *operator, pressure.chunks(BLOCK_CELLS), |pressure, cells| cells.copy_from_slice(pressure));
+        operator.apply();
+        read_blocks(&*operator, displacement.chunks_mut(BLOCK_CELLS), |block, cells| block.copy_from_slice(cells));
     }
 }
 

@@ -18,8 +18,7 @@ use crate::tiles::operator::tile_operator::TileOperator;
 
 /// An operator of precision `T` on vectors of double precision.
 pub(crate) struct ScaledOperator<'a, T> {
-    operator: TileOperator<T>,
-    tables: &'a Tables<T>,
+    operator: TileOperator<T, &'a Tables<T>>,
     /// Pressure that is subtracted from every pressure before it is rounded.
     reference: f64,
     /// The unit of pressures and displacements.
@@ -36,7 +35,7 @@ impl<'a, T: Real + Into<f64>> ScaledOperator<'a, T> {
     /// the heights. Its rounding and its part of the split kernel's error would then be larger than that pressure.
     pub(crate) fn new(hierarchy: Arc<Hierarchy>, tables: &'a Tables<T>, mean: f64, size: f64) -> Self {
         let reference = if hierarchy.cover_period() { mean } else { 0.0 };
-        Self { operator: TileOperator::new(hierarchy), tables, reference, unit: power_of_two_near(size) }
+        Self { operator: TileOperator::new(hierarchy, tables), reference, unit: power_of_two_near(size) }
     }
 
     /// Smooth remainder on the base grid, in λ: see [`TileOperator::base_displacement`].
@@ -63,11 +62,11 @@ impl<T: Real + Into<f64>> BlockOperator<f64> for ScaledOperator<'_, T> {
     }
 
     fn apply(&mut self) {
-        self.operator.apply(self.tables);
+        self.operator.apply();
     }
 
     fn read(&self, read: &(dyn Fn(usize, &[f64]) + Sync)) {
-        self.operator.read(self.tables, &|i, cells| {
+        self.operator.read(&|i, cells| {
             let mut values = [0.0; BLOCK_CELLS];
             for (value, &cell) in values.iter_mut().zip(cells) {
                 *value = self.unit * cell.into();

@@ -19,9 +19,10 @@ use crate::solution::stiffness::{elastic_part, stiffness_pressure, stiffness_und
 use crate::tiles::bands::{Receiver, Rows, bands, hand_out};
 use crate::tiles::base::Base;
 use crate::tiles::mesh::Mesh;
-use crate::tiles::operator::corrections::{TileCorrections, TileResponse};
+use crate::tiles::operator::corrections::TileCorrections;
 use crate::tiles::operator::hierarchy::Hierarchy;
 use crate::tiles::operator::tables::{Prepared, Tables};
+use crate::tiles::operator::tile_operator::TileOperator;
 use crate::tiles::scaled_operator::ScaledOperator;
 
 /// A contact problem solved on an adaptive mesh.
@@ -106,17 +107,13 @@ impl AdaptiveSolution {
         self.finest
     }
 
-    /// Tiles of the grid, and the mean pressure on its cells.
-    pub(crate) fn on_grid(&self) -> (Mesh, Cow<'_, [f64]>) {
-        let (tiles, pressure) = self.elements.on_coarsest(&self.pressure);
-        (Mesh::new(Elements::uniform(tiles), self.elements.ranks()), pressure)
-    }
-
-    /// Tiles of the smallest elements wherever there are elements, and the pressure on them.
+    /// Tiles of one size wherever there are elements, and the pressure on them.
     ///
-    /// A larger element stands for its parts.
-    pub(crate) fn on_finest(&self) -> (Mesh, Cow<'_, [f64]>) {
-        let (tiles, pressure) = self.elements.on_finest(&self.pressure);
+    /// They are tiles of the grid, with means over smaller elements. With `finest`, they are tiles of the smallest
+    /// elements, and a larger element stands for its parts.
+    pub(crate) fn on_one_size(&self, finest: bool) -> (Mesh, Cow<'_, [f64]>) {
+        let on_level = if finest { Elements::on_finest } else { Elements::on_coarsest };
+        let (tiles, pressure) = on_level(&self.elements, &self.pressure);
         (Mesh::new(Elements::uniform(tiles), self.elements.ranks()), pressure)
     }
 
@@ -132,7 +129,7 @@ impl AdaptiveSolution {
         receiver: Receiver,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        let (mesh, pressure) = self.on_grid();
+        let (mesh, pressure) = self.on_one_size(false);
         bands(&mesh, receiver).try_for_each(|band| hand_out((&mesh, &pressure), band, &mut take))
     }
 
@@ -150,7 +147,7 @@ impl AdaptiveSolution {
         rows: Rows,
         mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        let (own, pressure) = if rows.finest { self.on_finest() } else { self.on_grid() };
+        let (own, pressure) = self.on_one_size(rows.finest);
         let (own_tiles, [columns, _]) = (own.finest(), own.finest().extent());
         let prepared = kernels.response();
         let tables = prepared.tables(if rows.finest { self.finest } else { self.grid });
@@ -210,7 +207,7 @@ impl AdaptiveSolution {
             stiffness_pressure(&pressure, n, &mut corrections, self.converged)
         };
         let (hierarchy, tables) = self.operator_of(kernels.response());
-        stiffness_under(&x, n, &mut TileResponse::new(hierarchy, &tables))
+        stiffness_under(&x, n, &mut TileOperator::new(hierarchy, &tables))
     }
 
     /// The hierarchy and tables of L by this kernel on the mesh.

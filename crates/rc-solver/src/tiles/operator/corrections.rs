@@ -9,44 +9,9 @@ use crate::tiles::operator::hierarchy::Hierarchy;
 use crate::tiles::operator::tables::Tables;
 use crate::tiles::operator::tile_operator::TileOperator;
 
-/// The operator L without its approximate inverse.
-pub(crate) struct TileResponse<'a> {
-    operator: TileOperator<f32>,
-    displacement: &'a Tables<f32>,
-}
-
-impl<'a> TileResponse<'a> {
-    /// The operator with the tables of the levels of `hierarchy`.
-    pub(crate) fn new(hierarchy: Arc<Hierarchy>, displacement: &'a Tables<f32>) -> Self {
-        Self { operator: TileOperator::new(hierarchy), displacement }
-    }
-}
-
-impl BlockOperator<f32> for TileResponse<'_> {
-    fn layout(&self) -> BlockLayout {
-        self.operator.layout()
-    }
-
-    fn write(&mut self, write: &(dyn Fn(usize, &mut [f32]) + Sync)) {
-        self.operator.write(write);
-    }
-
-    fn apply(&mut self) {
-        self.operator.apply(self.displacement);
-    }
-
-    fn read(&self, read: &(dyn Fn(usize, &[f32]) + Sync)) {
-        self.operator.read(self.displacement, read);
-    }
-
-    fn release(&mut self) {
-        self.operator.release();
-    }
-}
-
 /// L and its approximate inverse on the tiles of a mesh, in single precision.
 pub(crate) struct TileCorrections<'a> {
-    response: TileResponse<'a>,
+    operator: TileOperator<f32, &'a Tables<f32>>,
     extension: TileExtension,
     preconditioner: &'a mut Tables<f32>,
 }
@@ -59,44 +24,44 @@ impl<'a> TileCorrections<'a> {
         preconditioner: &'a mut Tables<f32>,
     ) -> Self {
         let extension = TileExtension::new(hierarchy.halved());
-        Self { response: TileResponse::new(hierarchy, displacement), extension, preconditioner }
+        Self { operator: TileOperator::new(hierarchy, displacement), extension, preconditioner }
     }
 }
 
 impl BlockOperator<f32> for TileCorrections<'_> {
     fn layout(&self) -> BlockLayout {
-        self.response.layout()
+        self.operator.layout()
     }
 
     fn write(&mut self, write: &(dyn Fn(usize, &mut [f32]) + Sync)) {
-        self.response.write(write);
+        self.operator.write(write);
     }
 
     fn apply(&mut self) {
-        self.response.apply();
+        self.operator.apply();
     }
 
     fn read(&self, read: &(dyn Fn(usize, &[f32]) + Sync)) {
-        self.response.read(read);
+        self.operator.read(read);
     }
 
     fn release(&mut self) {
-        self.response.release();
+        self.operator.release();
     }
 }
 
 impl PreconditionedOperator for TileCorrections<'_> {
     fn set_active(&mut self, active: &[bool]) {
-        let (_, _, room) = self.response.operator.buffers();
+        let (_, _, room) = self.operator.buffers();
         self.extension.set_active(active, room);
     }
 
     fn precondition(&mut self, active: &[bool], values: &mut [f32]) {
-        let (arch, convolution, room) = self.response.operator.buffers();
+        let (arch, convolution, room) = self.operator.buffers();
         self.extension.precondition(arch, (convolution, room), self.preconditioner, active, values);
     }
 
     fn set_mean(&mut self, eigenvalue: f64) {
-        self.preconditioner.set_mean(eigenvalue, self.response.operator.base());
+        self.preconditioner.set_mean(eigenvalue, self.operator.base());
     }
 }

@@ -20,12 +20,6 @@ pub(crate) struct Targets<'a, T> {
     pub(crate) cells: &'a mut [T],
 }
 
-impl<'a, T> From<(&'a [[u32; 2]], &'a mut [T])> for Targets<'a, T> {
-    fn from((places, cells): (&'a [[u32; 2]], &'a mut [T])) -> Self {
-        Self { places, cells }
-    }
-}
-
 impl<'a, T> Targets<'a, T> {
     #[inline(always)]
     fn tiles(self) -> impl Iterator<Item = ([u32; 2], &'a mut [T; CELLS])> {

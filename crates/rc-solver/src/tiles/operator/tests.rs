@@ -8,8 +8,7 @@ use rc_core::{DVec2, Grid};
 use rc_kernel::{PeriodicLove, ScaleSplit, SplitParams};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, quarters};
 
-use crate::descent::operators::PreconditionedOperator;
-use crate::parallel::Tasks;
+use crate::descent::operators::{BlockOperator, PreconditionedOperator, read_blocks, write_blocks};
 use crate::tiles::base::Base;
 use crate::tiles::operator::corrections::TileCorrections;
 use crate::tiles::operator::hierarchy::Hierarchy;
@@ -73,24 +72,15 @@ pub(super) fn apply_above<T: Real + Into<f64>>(
     let finest = base.grid().with_elements(nx, ny).expect("a grid");
     let prepared = Prepared::<T>::displacement(split, base, n_coarse);
     let hierarchy = Arc::new(Hierarchy::new(base, elements, prepared.reach()));
-    let tables = prepared.tables(finest);
-    let mut operator = TileOperator::<T>::new(Arc::clone(&hierarchy));
-    operator.write(&|i, cells| {
-        for (cell, &p) in cells.iter_mut().zip(&p[i * BLOCK_CELLS..]) {
-            *cell = T::rounded(p);
-        }
+    let mut operator = TileOperator::new(hierarchy, prepared.tables(finest));
+    write_blocks(&mut operator, p.chunks(BLOCK_CELLS), |p, cells| {
+        cells.iter_mut().zip(p).for_each(|(cell, &p)| *cell = T::rounded(p));
     });
-    operator.apply(&tables);
+    operator.apply();
     let mut v = vec![0.0; p.len()];
-    let blocks = Tasks::new(v.chunks_mut(BLOCK_CELLS));
-    operator.read(&tables, &|i, cells| {
-        blocks.run(i, |v| {
-            for (v, cell) in v.iter_mut().zip(cells) {
-                *v = (*cell).into();
-            }
-        });
+    read_blocks(&operator, v.chunks_mut(BLOCK_CELLS), |v, cells| {
+        v.iter_mut().zip(cells).for_each(|(v, &cell)| *v = cell.into());
     });
-    drop(blocks);
     v
 }
 

@@ -2,6 +2,7 @@
 //!
 //! It goes up to the base grid, applies its convolution, and goes down again.
 
+use std::borrow::Borrow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -10,6 +11,7 @@ use rc_fft::{BLOCK_ROWS, Convolution, Instructions};
 use rc_quadtree::{BLOCK_CELLS, CELLS, TILE};
 
 use crate::descent::layout::BlockLayout;
+use crate::descent::operators::BlockOperator;
 use crate::grid::passes::{read_rows, write_rows};
 use crate::parallel;
 use crate::parallel::Tasks;
@@ -25,11 +27,13 @@ use crate::tiles::operator::tables::Tables;
 use crate::tiles::operator::tile_values::TileValues;
 use crate::tiles::part::{Part, blocks, own_blocks};
 
-/// Buffers for operators on one hierarchy.
+/// The operator of some tables on one hierarchy.
 ///
-/// Blocks of vectors have [`BLOCK_CELLS`] cells. Memory for vectors is taken when pressures are written.
-pub(crate) struct TileOperator<T> {
+/// Blocks of vectors have [`BLOCK_CELLS`] cells. Memory for vectors is taken when pressures are written. `B` is the
+/// tables or a reference to them.
+pub(crate) struct TileOperator<T, B> {
     hierarchy: Arc<Hierarchy>,
+    tables: B,
     arch: Arch,
     convolution: Convolution<T>,
     source: Vec<T>,
@@ -40,8 +44,9 @@ pub(crate) struct TileOperator<T> {
     ghosts: Vec<Vec<T>>,
 }
 
-impl<T: Real> TileOperator<T> {
-    pub(crate) fn new(hierarchy: Arc<Hierarchy>) -> Self {
+impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
+    /// The operator with the `tables` of the levels of `hierarchy`.
+    pub(crate) fn new(hierarchy: Arc<Hierarchy>, tables: B) -> Self {
         Self {
             arch: match Instructions::of_process() {
                 Instructions::Best => Arch::new(),
@@ -53,6 +58,7 @@ impl<T: Real> TileOperator<T> {
             displacements: Vec::new(),
             ghosts: Vec::new(),
             hierarchy,
+            tables,
         }
     }
 
@@ -69,22 +75,12 @@ impl<T: Real> TileOperator<T> {
         }
     }
 
-    /// Frees the memory of vectors until pressures are written again.
-    pub(crate) fn release(&mut self) {
-        (self.source, self.densities, self.displacements, self.ghosts) = Default::default();
-    }
-
     /// Buffers that another operator on the base grid and the elements may use and change.
     ///
     /// They are the vector instructions, the convolution, and room for a vector.
     pub(crate) fn buffers(&mut self) -> (Arch, &mut Convolution<T>, &mut [T]) {
         self.reserve();
         (self.arch, &mut self.convolution, &mut self.source)
-    }
-
-    /// The division of vectors into blocks.
-    pub(crate) fn layout(&self) -> BlockLayout {
-        self.hierarchy.mesh().layout()
     }
 
     /// The base grid.
@@ -94,47 +90,9 @@ impl<T: Real> TileOperator<T> {
 
     /// The smooth remainder: the displacement of the cells of the base grid's period.
     ///
-    /// It is that of the last [`TileOperator::apply`], tile by tile, row-major.
+    /// It is that of the last [`BlockOperator::apply`], tile by tile, row-major.
     pub(crate) fn base_displacement(&self) -> &[T] {
         &self.displacements[0]
-    }
-
-    /// Calls `write` once for each block, with its index and the values to fill in.
-    pub(crate) fn write(&mut self, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
-        self.reserve();
-        let own = &mut self.source[self.hierarchy.own_values()];
-        parallel::for_each(own.chunks_mut(BLOCK_CELLS).enumerate(), |(i, cells)| write(i, cells));
-    }
-
-    /// Applies a table, except for the part of the elements' own level.
-    ///
-    /// [`TileOperator::read`] adds that part.
-    pub(crate) fn apply(&mut self, tables: &Tables<T>) {
-        self.hierarchy.finest().exchange(&mut self.source);
-        self.set_ghosts();
-        self.restrict(tables);
-        self.convolve_base(tables);
-        self.prolong(tables);
-    }
-
-    /// Calls `read` once for each block, with its index and the result.
-    ///
-    /// The result is that of the last [`TileOperator::apply`], which must have had the same tables.
-    pub(crate) fn read(&self, tables: &Tables<T>, read: &(dyn Fn(usize, &[T]) + Sync)) {
-        let (blocks, n_own) = (&self.hierarchy.blocks, self.hierarchy.own_values().len());
-        parallel::for_each_index(blocks.len(), &|i| {
-            let mut block = [T::default(); BLOCK_CELLS];
-            let (coarser, tiles) = &blocks[i];
-            let cells = &mut block[..tiles.len() * CELLS];
-            if *coarser == 0 {
-                self.displace_finest(tables, tiles.clone(), cells);
-            } else {
-                self.displace_coarse(tables, *coarser, tiles.clone(), cells);
-            }
-            self.add_ghosts(tables, *coarser, tiles.clone(), cells);
-            // Values that fill up the last block of a level have no displacement.
-            read(i, &block[..(n_own - i * BLOCK_CELLS).min(BLOCK_CELLS)]);
-        });
     }
 
     fn set_ghosts(&mut self) {
@@ -148,21 +106,22 @@ impl<T: Real> TileOperator<T> {
     }
 
     /// Computes the densities of the levels between the finest and the base grid.
-    fn restrict(&mut self, tables: &Tables<T>) {
+    fn restrict(&mut self) {
+        let tables = self.tables.borrow();
         let (n_levels, arch) = (self.hierarchy.n_levels(), self.arch);
         let levels = &self.hierarchy.levels;
         for level in (1..n_levels).rev() {
             let (coarser, finer) = self.densities.split_at_mut(level + 1);
             let finer = TileValues::new(finer.first().unwrap_or(&self.source), levels[level + 1].tiles());
             let density = &mut coarser[level];
-            parallel::for_each(own_blocks(&levels[level], density), |targets| {
-                restrict(tables, (level, n_levels), finer, (arch, targets.into()));
+            parallel::for_each(own_blocks(&levels[level], density), |(places, cells)| {
+                restrict(tables, (level, n_levels), finer, (arch, Targets { places, cells }));
             });
             if let Some((cells, tiles)) = self.hierarchy.elements_of(level) {
                 let elements = TileValues::new(&self.source[cells], tiles);
                 let pass = CoarseDensity { table: tables.coarse_table(n_levels - level), elements };
-                parallel::for_each(own_blocks(&levels[level], density), |targets| {
-                    (tables.sizes.passes.add_coarse)(arch, &pass, targets.into());
+                parallel::for_each(own_blocks(&levels[level], density), |(places, cells)| {
+                    (tables.sizes.passes.add_coarse)(arch, &pass, Targets { places, cells });
                 });
             }
             levels[level].exchange(density);
@@ -170,7 +129,8 @@ impl<T: Real> TileOperator<T> {
     }
 
     /// Computes the base grid: its density from level 1, its convolution, its displacement as tiles.
-    fn convolve_base(&mut self, tables: &Tables<T>) {
+    fn convolve_base(&mut self) {
+        let tables = self.tables.borrow();
         let (side, arch, levels) = (self.hierarchy.base().period()[0], self.arch, &self.hierarchy.levels);
         let finer = TileValues::new(self.densities.get(1).unwrap_or(&self.source), levels[1].tiles());
         let n_levels = self.hierarchy.n_levels();
@@ -190,7 +150,8 @@ impl<T: Real> TileOperator<T> {
     }
 
     /// Computes the displacements of the levels between the base grid and the finest.
-    fn prolong(&mut self, tables: &Tables<T>) {
+    fn prolong(&mut self) {
+        let tables = self.tables.borrow();
         let (arch, levels) = (self.arch, &self.hierarchy.levels);
         for level in 1..self.hierarchy.n_levels() {
             let (coarser, finer) = self.displacements.split_at_mut(level);
@@ -199,15 +160,16 @@ impl<T: Real> TileOperator<T> {
                 density: TileValues::new(&self.densities[level], levels[level].tiles()),
                 coarser: TileValues::new(&coarser[level - 1], levels[level - 1].tiles()),
             };
-            parallel::for_each(own_blocks(&levels[level], &mut finer[0]), |targets| {
-                (tables.sizes.passes.displace)(arch, &pass, targets.into());
+            parallel::for_each(own_blocks(&levels[level], &mut finer[0]), |(places, cells)| {
+                (tables.sizes.passes.displace)(arch, &pass, Targets { places, cells });
             });
             levels[level].exchange(&mut finer[0]);
         }
     }
 
     /// Writes the displacement of some tiles of the finest elements.
-    fn displace_finest(&self, tables: &Tables<T>, tiles: Range<usize>, cells: &mut [T]) {
+    fn displace_finest(&self, tiles: Range<usize>, cells: &mut [T]) {
+        let tables = self.tables.borrow();
         let (levels, level) = (&self.hierarchy.levels, self.hierarchy.n_levels());
         let table = &tables.levels[level - 1];
         let density = TileValues::new(&self.source, levels[level].tiles());
@@ -223,7 +185,8 @@ impl<T: Real> TileOperator<T> {
     }
 
     /// Writes the displacement of some tiles of elements 2^`coarser` times as large as the finest.
-    fn displace_coarse(&self, tables: &Tables<T>, coarser: usize, tiles: Range<usize>, cells: &mut [T]) {
+    fn displace_coarse(&self, coarser: usize, tiles: Range<usize>, cells: &mut [T]) {
+        let tables = self.tables.borrow();
         let Hierarchy { levels, leaves, .. } = self.hierarchy.as_ref();
         let (elements, level) = (self.hierarchy.elements(), self.hierarchy.n_levels() - coarser);
         let Leaves { tiles: here, ghosts } = &leaves[coarser - 1];
@@ -241,13 +204,56 @@ impl<T: Real> TileOperator<T> {
     /// Adds the displacement that larger elements nearby cause in some tiles.
     ///
     /// The tiles have elements 2^`coarser` times as large as the finest.
-    fn add_ghosts(&self, tables: &Tables<T>, coarser: usize, tiles: Range<usize>, cells: &mut [T]) {
+    fn add_ghosts(&self, coarser: usize, tiles: Range<usize>, cells: &mut [T]) {
+        let tables = self.tables.borrow();
         let Some(larger) = self.hierarchy.leaves.get(coarser) else { return };
         let Some(table) = tables.coarse_table(coarser + 1) else { return };
         let ghosts = TileValues::new(&self.ghosts[coarser], &larger.ghosts);
         let places = &self.hierarchy.elements().levels()[coarser].places()[tiles];
         let pass = ShortRange { taps: &table.across, values: ghosts };
         (tables.sizes.passes.add_stencil)(self.arch, &pass, Targets { places, cells });
+    }
+}
+
+impl<T: Real, B: Borrow<Tables<T>> + Sync> BlockOperator<T> for TileOperator<T, B> {
+    fn layout(&self) -> BlockLayout {
+        self.hierarchy.mesh().layout()
+    }
+
+    fn write(&mut self, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
+        self.reserve();
+        let own = &mut self.source[self.hierarchy.own_values()];
+        parallel::for_each(own.chunks_mut(BLOCK_CELLS).enumerate(), |(i, cells)| write(i, cells));
+    }
+
+    /// Applies the tables, except for the part of the elements' own level, which [`BlockOperator::read`] adds.
+    fn apply(&mut self) {
+        self.hierarchy.finest().exchange(&mut self.source);
+        self.set_ghosts();
+        self.restrict();
+        self.convolve_base();
+        self.prolong();
+    }
+
+    fn read(&self, read: &(dyn Fn(usize, &[T]) + Sync)) {
+        let (blocks, n_own) = (&self.hierarchy.blocks, self.hierarchy.own_values().len());
+        parallel::for_each_index(blocks.len(), &|i| {
+            let mut block = [T::default(); BLOCK_CELLS];
+            let (coarser, tiles) = &blocks[i];
+            let cells = &mut block[..tiles.len() * CELLS];
+            if *coarser == 0 {
+                self.displace_finest(tiles.clone(), cells);
+            } else {
+                self.displace_coarse(*coarser, tiles.clone(), cells);
+            }
+            self.add_ghosts(*coarser, tiles.clone(), cells);
+            // Values that fill up the last block of a level have no displacement.
+            read(i, &block[..(n_own - i * BLOCK_CELLS).min(BLOCK_CELLS)]);
+        });
+    }
+
+    fn release(&mut self) {
+        (self.source, self.densities, self.displacements, self.ghosts) = Default::default();
     }
 }
 
