@@ -32,6 +32,15 @@ pub(crate) fn is_plastic(pressure: &[f64], bounds: Bounds) -> bool {
     bounds.is_limited() && parallel::maximum(pressure, 0.0) >= NEARLY * bounds.hardness
 }
 
+/// Whether single precision has moved a pressure with a hardness away from its bounds or its load.
+///
+/// It is never so without a hardness, because scaling sets the load after each step then. A hardness that nothing
+/// reaches must not change a digit.
+pub(crate) fn has_drifted(bounds: Bounds, n_cell: f64, layout: &BlockLayout, pressure: &[f64]) -> bool {
+    let is_off = |mean: f64| (mean_pressure(n_cell, layout, pressure) / mean - 1.0).abs() > ROUNDING;
+    bounds.is_limited() && (is_plastic(pressure, bounds) || bounds.mean().is_some_and(is_off))
+}
+
 /// Mean of the pressure over a cell with room for `n_cell` of the smallest elements.
 pub(crate) fn mean_pressure(n_cell: f64, layout: &BlockLayout, pressure: &[f64]) -> f64 {
     let [sum] = layout.total(parallel::map(pressure.chunks(layout.len()), |block| [block.iter().sum()]));
@@ -57,10 +66,6 @@ pub(crate) fn project_to_load(
     let Some(mean) = bounds.mean() else { return };
     let present = mean_pressure(n_cell, layout, pressure);
     let scale = mean / present;
-    // A hardness that nothing reaches must not change a digit.
-    if bounds.is_limited() && (scale - 1.0).abs() <= ROUNDING {
-        return;
-    }
     let may_scale = || scale.max(1.0) * parallel::maximum(pressure, 0.0) < NEARLY * bounds.hardness;
     if present > 0.0 && (!bounds.is_limited() || may_scale()) {
         parallel::update(pressure, |p| *p *= scale);

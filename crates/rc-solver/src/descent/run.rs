@@ -3,6 +3,7 @@
 use rc_core::{Event, Observer};
 
 use crate::descent::descending_round::has_risen;
+use crate::descent::load::has_drifted;
 use crate::descent::observed::ObservedMesh;
 use crate::descent::outcome::Outcome;
 use crate::descent::state::Descent;
@@ -141,7 +142,7 @@ impl Descent<'_> {
     /// Scales the pressure to the prescribed load or penetration. The gap follows the scaling to rounding, since v is
     /// linear in p.
     pub(crate) fn refresh(&mut self) -> GapSums {
-        if self.problem.bounds.is_limited() {
+        if has_drifted(self.problem.bounds, self.n_cell(), &self.layout, &self.pressure) {
             self.project_to_load();
         }
         let sums = self.fresh_gap();

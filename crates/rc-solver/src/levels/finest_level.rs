@@ -12,7 +12,7 @@ use rc_quadtree::{BLOCK_CELLS, ContactFields};
 
 use crate::descent::gap::{fresh_gap, rescale};
 use crate::descent::info::LevelInfo;
-use crate::descent::load::project_to_load;
+use crate::descent::load::{has_drifted, project_to_load};
 use crate::descent::operators::{BlockOperator, LevelOperators, write_blocks};
 use crate::descent::outcome::Outcome;
 use crate::descent::rows::ElementValues;
@@ -214,9 +214,9 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let (prepared, tables) = tables.gaps.choose(setup, certify);
         let mut pressure = current.elements.moved(elements, &current.pressure, 0.0);
         let mut gap = vec![0.0; pressure.len()];
-        if setup.problem.bounds.is_limited() {
-            // Single precision has changed the load a little.
-            project_to_load(&setup.problem, info.grid.len() as f64, &elements.layout(), &mut pressure, None);
+        let (n_cell, layout) = (info.grid.len() as f64, elements.layout());
+        if has_drifted(setup.problem.bounds, n_cell, &layout, &pressure) {
+            project_to_load(&setup.problem, n_cell, &layout, &mut pressure, None);
         }
         let hierarchy = setup.hierarchy(elements, prepared.reach());
         let mut operator = setup.operator(hierarchy, tables, current);
