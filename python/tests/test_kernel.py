@@ -62,9 +62,9 @@ def test_a_function_that_is_not_a_solid_is_refused(heights):
 
     with pytest.raises(ZeroDivisionError, match="inside"):
         rc.solve(heights, **CONTACT, kernel=fails)
-    with pytest.raises(ValueError, match="needs kernel love"):
+    with pytest.raises(ValueError, match="^method: the method adaptive cannot be combined with a function as kernel"):
         rc.solve(heights, **CONTACT, kernel=half_space, method="adaptive")
-    with pytest.raises(ValueError, match="area_error: a kernel function is evaluated on one grid only"):
+    with pytest.raises(ValueError, match="^area_error: .* the function is evaluated on one grid only"):
         rc.solve(waves=8, pressure=1e5, area_error=0.01, kernel=half_space)
 
 
@@ -142,7 +142,7 @@ def test_a_patch_does_not_meet_itself(heights):
     trough = np.tile((np.arange(64) - 31.5) ** 2 * 1e-8, (64, 1))
     in_cell, alone = (rc.solve(trough, **CONTACT, boundary=boundary) for boundary in ("periodic", "free"))
     assert len(in_cell.spots) == 1 and len(alone.spots) == 2
-    with pytest.raises(ValueError, match="boundary: the function given as kernel"):
+    with pytest.raises(ValueError, match="^boundary: .* the function describes a periodic cell"):
         rc.solve(heights, **CONTACT, kernel=half_space, boundary="free")
-    with pytest.raises(ValueError, match="leakage: the flow is computed on a periodic cell only"):
+    with pytest.raises(ValueError, match="^leakage: .* the flow is computed on a periodic cell only"):
         rc.solve(heights, **CONTACT, leakage=True, boundary="free")

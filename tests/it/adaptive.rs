@@ -6,7 +6,8 @@ use rc_core::{DVec2, Field, Grid, HeightField, HeightSource, Operator, Silent};
 use rc_fractal::{Normalisation, SpectrumParams, Surface};
 use rc_kernel::Love;
 use rc_solver::{
-    AdaptiveError, ContactProblem, Control, Method, Solution, SolveError, SolveParams, Status, UniformOperator, solve,
+    AdaptiveError, ContactProblem, Control, Feature, Method, Solution, SolveError, SolveParams, Status,
+    UniformOperator, solve,
 };
 use rc_theory::hertz::PeriodicHertz;
 
@@ -237,7 +238,9 @@ fn what_cannot_be_done_is_said_before_any_work() {
     let params = certified();
     assert!(matches!(error(66, params), AdaptiveError::Grid { .. }), "no coarser grid has 32 waves");
     let border = SolveParams { border_level: 1, ..params };
-    assert!(matches!(error(501, border), AdaptiveError::BorderOfGrid { .. }), "1002 has no whole tiles of halves");
+    let uneven =
+        solve(surface.on(Grid::square(501).expect("a grid")), control, &border).expect_err("no whole tiles of halves");
+    assert!(matches!(uneven, SolveError::Unsupported(refusal) if refusal.object == Feature::UnevenGrid));
     let small = SolveParams { base_side: Some(64), ..params };
     assert!(matches!(error(1024, small), AdaptiveError::Base { waves: 32, .. }), "64 elements for 32 waves");
     let little = SolveParams { memory_limit: Some(1_000_000), ..params };
@@ -245,8 +248,8 @@ fn what_cannot_be_done_is_said_before_any_work() {
     let exact = SolveParams { operator_error: 1e-14, ..params };
     assert!(matches!(error(1024, exact), AdaptiveError::OperatorError { .. }));
     let flat = Field::zeros(Grid::square(512).expect("a grid"));
-    let error = refused((&flat).into(), params);
-    assert!(matches!(error, AdaptiveError::Flat), "{error}");
+    let error = solve(&flat, control, &params).expect_err("nothing to adapt to");
+    assert!(matches!(&error, SolveError::Unsupported(refusal) if refusal.object == Feature::Flat), "{error}");
 }
 
 #[test]

@@ -5,7 +5,9 @@ use std::f64::consts::{PI, TAU};
 use rc_core::{DVec2, Field, Grid, Kernel, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_kernel::{Layer, Love, LoveLayer, SpectralLayer};
-use rc_solver::{ContactProblem, Control, Method, MethodReason, SolveError, SolveParams, Status, solve_dense};
+use rc_solver::{
+    ContactProblem, Control, Feature, Method, MethodReason, SolveError, SolveParams, Status, refusal, solve_dense,
+};
 use rc_theory::hertz::PeriodicHertz;
 use rc_theory::thin_layer::ThinLayer;
 
@@ -164,9 +166,11 @@ fn the_uniform_method_solves_a_layer_and_says_why() {
     let kernel = LoveLayer(layer(0.1, 0.3));
     let problem = ContactProblem::new(&heights, Control::MeanPressure(1e-4)).with_kernel(&kernel);
     let plan = problem.clone().plan(&SolveParams::default()).expect("a plan");
-    assert_eq!((plan.method(), plan.reason()), (Method::Uniform, &MethodReason::Layer));
+    let refused = refusal(&[Feature::Layer], Some(Method::Adaptive)).expect("no adaptive form");
+    let reason = MethodReason::Only { method: Method::Uniform, refusal: refused.clone() };
+    assert_eq!((plan.method(), plan.reason()), (Method::Uniform, &reason));
     let error = problem.plan(&SolveParams::default().by(Method::Adaptive)).err();
-    assert!(matches!(error, Some(SolveError::Solid { method: Method::Adaptive })), "{error:?}");
+    assert!(matches!(&error, Some(SolveError::Unsupported(found)) if *found == refused), "{error:?}");
     let stiff = solved(&heights, &kernel, Control::MeanPressure(1e-3), 1e-8);
     let half_space = solved(&heights, &Love, Control::MeanPressure(1e-3), 1e-8);
     assert!(stiff.area().fraction < half_space.area().fraction, "a layer is stiffer than the half-space");

@@ -8,7 +8,7 @@ use rc_comm::{LostRank, Ranks, run_threads};
 use rc_core::{Event, Field, Grid, HeightField, Observer, Silent};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_solver::{
-    AdaptiveError, Checkpoint, ContactElement, ContactProblem, Control, Method, Solution, SolveError, SolveParams,
+    Checkpoint, ContactElement, ContactProblem, Control, Feature, Method, Solution, SolveError, SolveParams,
 };
 
 /// The results of a solution that one rank has.
@@ -179,8 +179,9 @@ fn what_only_one_rank_solves_is_refused_over_several() {
             assert!(result.as_ref().is_err_and(expected), "{result:?}");
         }
     };
-    let over_ranks = |error: &SolveError| matches!(error, SolveError::Adaptive(AdaptiveError::OverRanks { .. }));
-    refused(scene.params.by(Method::Uniform), 256, |error| matches!(error, SolveError::OneRank { .. }));
+    let over_ranks =
+        |error: &SolveError| matches!(error, SolveError::Unsupported(refusal) if refusal.object == Feature::Ranks);
+    refused(scene.params.by(Method::Uniform), 256, over_ranks);
     refused(SolveParams { border_level: 1, ..scene.params }, 256, over_ranks);
     refused(scene.params, 251, over_ranks);
 }

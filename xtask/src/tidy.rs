@@ -4,6 +4,7 @@
 //! it.
 
 mod arrows;
+mod capabilities;
 mod circles;
 mod complaint;
 mod culture;
@@ -29,7 +30,11 @@ use rc_figures::repository::{self, Sources};
 /// snapshots and house rules. The numbers of docs/reproduction.md, docs/gfmd.md, docs/challenge.md, docs/benchmarks.md
 /// and README.md are checked too. It is also a test, so `cargo xtask test` runs it.
 #[derive(clap::Args)]
-pub(crate) struct Args {}
+pub(crate) struct Args {
+    /// Write the guide's table of what goes with what, from the solver's table
+    #[arg(long)]
+    write: bool,
+}
 
 /// A check, which is a pure function of the sources.
 type Check = fn(&Sources) -> Vec<Complaint>;
@@ -46,6 +51,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("culture", culture::check),
     ("dependencies", dependencies::check),
     ("guide", guide::check),
+    ("capabilities", capabilities::check),
     ("packages", packages::check),
     ("reproduction", rc_figures::reproduction::check),
     ("references", rc_figures::documents::check),
@@ -53,7 +59,10 @@ const CHECKS: &[(&str, Check)] = &[
 ];
 
 #[expect(clippy::print_stdout, reason = "the result of the command")]
-pub(crate) fn run(_args: &Args, xtask: &clap::Command) -> Result<()> {
+pub(crate) fn run(args: &Args, xtask: &clap::Command) -> Result<()> {
+    if args.write {
+        capabilities::write()?;
+    }
     let complaints = complaints(xtask)?;
     if !complaints.is_empty() {
         bail!("{} untidy:\n{}", complaints.len(), complaints.join("\n"));

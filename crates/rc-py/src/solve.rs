@@ -16,7 +16,7 @@ use rc_heights::HeightMap;
 use rc_sweep::memory::Budget;
 
 use crate::arrays::{self, Heights};
-use crate::errors::{bad_input, raised};
+use crate::errors::raised;
 use crate::kernel::OwnKernel;
 use crate::running::{self, Ended, Run, on_threads};
 use crate::scene;
@@ -102,9 +102,6 @@ impl Prepared {
     fn new(scene: Scene, given: &Given<'_>) -> PyResult<Self> {
         let started = Instant::now();
         let Scene { surface, contact, run } = scene;
-        if given.kernel.is_some() && contact.area_error.is_some() {
-            return Err(bad_input("area_error: a kernel function is evaluated on one grid only; give grid instead"));
-        }
         let map = given.heights.as_ref().map(|heights| arrays::map_of(heights, given.sides)).transpose()?;
         let mut scene = match &map {
             Some(map) => {

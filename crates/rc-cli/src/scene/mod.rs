@@ -1,6 +1,7 @@
 //! The scene: its keys, which are also flags, its file, and the checked problem.
 
 pub mod as_read;
+pub(crate) mod features;
 pub mod file;
 pub mod keys;
 pub mod resolve;

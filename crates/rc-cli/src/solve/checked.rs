@@ -3,10 +3,12 @@
 use std::time::Instant;
 
 use rc_core::{Boundary, Kernel, Observer};
+use rc_solver::Feature;
 use rc_sweep::memory::Budget;
 
 use super::solved::{ProblemSetup, Solved};
 use crate::error::CliError;
+use crate::scene::features;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
 use crate::scene::resolve::{self, ContactSetup};
 use crate::scene::surface::{LoadedSurface, SurfaceSetup};
@@ -56,19 +58,13 @@ impl CheckedScene {
         is_map: bool,
         surface: impl FnOnce() -> Result<SurfaceSetup, CliError>,
     ) -> Result<Self, CliError> {
+        features::check(&contact, is_map.then_some(Feature::HeightMap))?;
         let area_error = contact.area_error;
-        let contact = match area_error {
-            None => contact,
-            Some(_) if is_map => {
-                return Err(CliError::input(
-                    "area_error: a height map has its own grid, which cannot be chosen; omit it",
-                ));
-            }
-            Some(_) => {
-                let auto = contact.energy_tolerance.is_none().then_some(ToleranceSpec::Auto);
-                let tolerance = contact.tolerance.or(auto);
-                ContactKeys { area_error: None, tolerance, ..contact }
-            }
+        let contact = if area_error.is_some() {
+            let auto = contact.energy_tolerance.is_none().then_some(ToleranceSpec::Auto);
+            ContactKeys { area_error: None, tolerance: contact.tolerance.or(auto), ..contact }
+        } else {
+            contact
         };
         let mut surface = surface()?;
         let contact = ContactSetup { grid_is_chosen: area_error.is_some(), ..resolve::contact(contact, surface.cell)? };

@@ -2,11 +2,12 @@
 
 use rc_core::Grid;
 use rc_core::quantity::{count, digits};
-use rc_solver::{AdaptiveError, Certificate, ErrorBound, ProblemError, SolveError};
+use rc_solver::{AdaptiveError, Feature, Method, ProblemError, Solution, SolveError, refusal};
 use rc_sweep::memory::Budget;
 
 use super::failure::Failure;
 use crate::error::CliError;
+use crate::scene::features;
 use crate::scene::resolve::ContactSetup;
 use crate::scene::surface::LoadedSurface;
 
@@ -32,7 +33,7 @@ pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &Conta
             digits(100.0 * wanted, 2),
             digits(rounded_up(100.0 * reached), 2)
         )),
-        SolveError::NoWaves => CliError::input(format_args!("area_error: {error}")),
+        SolveError::Unsupported(refused) => features::of(refused),
         SolveError::Grid(_) | SolveError::TooCoarse { .. } => CliError::input(format_args!("grid: {error}")),
         other => CliError::input(other),
     }
@@ -93,7 +94,7 @@ fn of_problem(error: &ProblemError, contact: &ContactSetup) -> CliError {
 
 fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
     match error {
-        AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } | AdaptiveError::Elements { .. } => {
+        AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => {
             CliError::input(format_args!("grid: {error}; --method uniform takes any grid"))
         }
         AdaptiveError::Memory { grid, needed, area_percent, .. } => {
@@ -110,19 +111,27 @@ fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
                 Ok(()) => CliError::input(format_args!("memory_limit: {error}")),
             }
         }
-        AdaptiveError::BorderLevel { .. } | AdaptiveError::BorderOfMap | AdaptiveError::BorderOfGrid { .. } => {
-            CliError::input(format_args!("border_level: {error}"))
-        }
+        AdaptiveError::BorderLevel { .. } => CliError::input(format_args!("border_level: {error}")),
         other => CliError::input(format_args!("method: {other}")),
     }
 }
 
-/// The failure of a solution that did not reach the tolerance.
-pub(super) fn not_converged(grid: Grid, iterations: usize, certificate: &Certificate, bound: ErrorBound) -> Failure {
-    let iterations = count(iterations, "iteration");
-    let what = format!("not converged to {bound} on {grid} elements after {iterations}: {certificate}");
-    Failure { what, remedy: LARGER_TOLERANCE }
+/// The failure of a solution that did not reach the tolerance, with its finest grid and the iterations on it.
+pub(super) fn not_converged(solution: &Solution<'_>, grid: Grid, iterations: usize, contact: &ContactSetup) -> Failure {
+    let what = format!(
+        "not converged to {} on {grid} elements after {}: {}",
+        solution.bound(),
+        count(iterations, "iteration"),
+        solution.certificate()
+    );
+    let mut features = features::of_contact(&contact.keys);
+    features.extend((contact.place.ranks.size() > 1).then_some(Feature::Ranks));
+    let has_other = solution.method() == Method::Adaptive && refusal(&features, Some(Method::Uniform)).is_none();
+    Failure { what, remedy: if has_other { UNIFORM_METHOD } else { LARGER_TOLERANCE } }
 }
+
+/// What to do about a solution of the adaptive method, whose operator has an error.
+const UNIFORM_METHOD: &str = "; give --method uniform, which has an exact operator and needs memory for the whole grid, a larger tolerance or a longer time limit; for other causes see Questions in the guide (docs/faq.md)";
 
 /// What to do about a solution that did not reach the tolerance.
 const LARGER_TOLERANCE: &str =

@@ -25,12 +25,14 @@ pub use solved::{ProblemSetup, Solved, SolvedParts};
 
 use std::path::PathBuf;
 
+use rc_solver::Feature;
+
 use self::args::SolveArgs;
 use self::job::Job;
 use crate::error::CliError;
 use crate::run::stop;
 use crate::scene::keys::{RunKeys, Scene};
-use crate::scene::{file, resolve};
+use crate::scene::{features, file, resolve};
 use crate::terminal;
 
 /// Folder of the results of a run without arguments.
@@ -42,17 +44,11 @@ const EXAMPLE_FOLDER: &str = "rc-result";
 /// [`CliError`] of every kind.
 pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
     let (dry_run, watch) = (args.dry_run, args.watch);
-    if dry_run && watch {
-        return Err(CliError::input("watch: a dry run has no contact to show; omit --watch or --dry-run"));
-    }
     let scene = scene_of(args)?;
+    let shown = [watch.then_some(Feature::Watch), dry_run.then_some(Feature::DryRun)];
+    features::check(&scene.contact, shown.into_iter().flatten())?;
     if watch && scene.run.out.is_none() {
         return Err(CliError::input("watch: the picture is written to the folder of the results; give --out DIR"));
-    }
-    if dry_run && scene.contact.area_error.is_some() {
-        return Err(CliError::input(
-            "dry_run: the grid that area_error chooses is not known before the solve; give grid instead",
-        ));
     }
     let job = Job::new(scene, watch)?;
     stop::listen();

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use clap::{Args, Parser, Subcommand};
 use rc_comm::Ranks;
+use rc_solver::Feature;
 
 use super::args::SolveArgs;
 use super::job::Job;
@@ -17,9 +18,9 @@ use crate::files::checkpoint::CheckpointFile;
 use crate::help;
 use crate::run::stop;
 use crate::run::together::together;
-use crate::scene::file;
 use crate::scene::keys::Scene;
 use crate::scene::resolve::Place;
+use crate::scene::{features, file};
 use crate::terminal;
 
 /// One contact problem over the ranks of MPI: mpirun -n 4 rc-mpi solve ...
@@ -83,11 +84,6 @@ pub fn main_over_ranks(words: impl IntoIterator<Item = OsString>, ranks: &Ranks)
 
 fn run(args: RanksArgs, ranks: &Ranks) -> Result<(), CliError> {
     let RanksArgs { solve, checkpoint, zarr } = args;
-    if solve.watch {
-        return Err(CliError::input(
-            "watch: no rank has the whole contact while it is solved; omit it, or use rc solve",
-        ));
-    }
     let dry_run = solve.dry_run;
     let job = together(ranks, prepare(solve, (checkpoint.as_deref(), zarr), ranks))?;
     stop::listen();
@@ -106,16 +102,20 @@ fn run(args: RanksArgs, ranks: &Ranks) -> Result<(), CliError> {
 
 /// The job of the checked scene, with its ranks and its checkpoint file.
 fn prepare(args: SolveArgs, (checkpoint, zarr): (Option<&Path>, bool), ranks: &Ranks) -> Result<Job, CliError> {
-    let dry_run = args.dry_run;
+    let (dry_run, watch) = (args.dry_run, args.watch);
     let scene = scene_of(args)?;
     let text = scene_text(&scene);
-    if checkpoint.is_some() && scene.contact.area_error.is_some() {
-        return Err(CliError::input("checkpoint: area_error solves on several grids; give grid instead"));
-    }
-    if scene.contact.leakage {
-        return Err(CliError::input("leakage: the flow is not solved over ranks; omit leakage, or use rc solve"));
-    }
-    let mut job = Job::new(scene, false)?;
+    let features = [
+        (Feature::Ranks, ranks.size() > 1),
+        (Feature::Checkpoint, checkpoint.is_some()),
+        (Feature::Watch, watch),
+        (Feature::DryRun, dry_run),
+    ];
+    features::check(
+        &scene.contact,
+        features.into_iter().filter_map(|(feature, is_there)| is_there.then_some(feature)),
+    )?;
+    let mut job = Job::new(scene, watch)?;
     if zarr {
         job = job.with_zarr()?;
     }

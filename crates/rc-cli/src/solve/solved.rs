@@ -184,8 +184,8 @@ impl<'a> ProblemSetup<'a> {
     fn solved(self, result: Result<Solution<'a>, SolveError>, started: Instant) -> Result<Solved<'a>, CliError> {
         let (solution, failure) = match result {
             Ok(solution) => (solution, None),
-            Err(SolveError::NotConverged { grid, iterations, certificate, solution }) => {
-                let failure = messages::not_converged(grid, iterations, &certificate, solution.bound());
+            Err(SolveError::NotConverged { grid, iterations, solution, .. }) => {
+                let failure = messages::not_converged(&solution, grid, iterations, self.contact);
                 (*solution, Some(failure))
             }
             Err(error) => return Err(self.refuse(&error)),

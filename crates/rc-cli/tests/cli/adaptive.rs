@@ -74,10 +74,10 @@ fn the_method_is_chosen_by_what_can_and_what_is_cheaper() {
         (&["1e5", "--grid", "128"], "adaptive", "the contact area was estimated as"),
         (&["1e5", "--grid", "128", "--method", "adaptive"], "adaptive", "as requested"),
         (&["1e5", "--grid", "128", "--method", "uniform"], "uniform", "as requested"),
-        (&["1e5", "--grid", "128", "--kernel", "spectral"], "uniform", "the kernel spectral has no adaptive form"),
+        (&["1e5", "--grid", "128", "--kernel", "spectral"], "uniform", "has no adaptive form (spectral)"),
         (&["4e6", "--grid", "128"], "uniform", "cheaper for the contact area of"),
         (&["1e9", "--grid", "128"], "uniform", "contact area of 100 %"),
-        (&["1e5", "--grid", "128x64"], "uniform", "not square"),
+        (&["1e5", "--grid", "128x64"], "uniform", "needs square elements"),
         (&["1e5", "--grid", "66"], "uniform", "the grid 66 x 66 is too coarse for the adaptive method"),
         (&["1e5", "--grid", "130"], "adaptive", "the contact area was estimated as"),
         (&["1e5", "--grid", "128", "--tolerance", "1e-12"], "uniform", "1e-12"),
@@ -261,7 +261,7 @@ fn a_border_level_refines_edges_and_keeps_the_grid() {
     let output = place.run(&[&scene[..], &["--border-level", "2", "--out", "fine"]].concat());
     let fine = summary_of(&output);
     assert_eq!((&fine["grid"], &fine["border_level"]), (&plain["grid"], &2.into()));
-    assert_eq!(reason(&fine), "adaptive: a border level was given");
+    assert_eq!(reason(&fine), "adaptive: only the adaptive method halves elements at the edges of contacts");
     assert!(number(&fine, "area_fraction_cells") < number(&plain, "area_fraction_cells"));
     assert_close("area", number(&fine, "area_fraction"), number(&plain, "area_fraction"), 0.02);
     let pressure = field(&place, "fine/pressure.npy");
@@ -285,11 +285,17 @@ fn border_levels_that_cannot_be_are_refused() {
         let output = place.run(&[&scene[..], more].concat());
         assert_refused(&output, what);
     };
-    refused(&["--border-level", "2", "--method", "uniform"], "border_level: only the adaptive method");
-    refused(&["--border-level", "2", "--kernel", "spectral"], "border_level: only the adaptive method");
+    refused(
+        &["--border-level", "2", "--method", "uniform"],
+        "method: the method uniform cannot be combined with a border level",
+    );
+    refused(
+        &["--border-level", "2", "--kernel", "spectral"],
+        "border_level: a border level cannot be combined with the kernel spectral",
+    );
     refused(&["--border-level", "11"], "10 is the deepest");
     refused(&["--border-level", "99999999999"], "10 is the deepest");
     place.write("map.npy", npy("<f8", false, "(128, 128)", &f8(&bumps(128))));
     let output = place.run(&map("solve", "map.npy", &["--pressure", PRESSURE, "--border-level", "1"]));
-    assert_refused(&output, "border_level: a border level needs a surface of waves");
+    assert_refused(&output, "border_level: a border level cannot be combined with a height map");
 }

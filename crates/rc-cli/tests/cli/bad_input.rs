@@ -61,14 +61,20 @@ fn bad_values_of_the_contact_are_refused_with_their_key() {
         (&["--tolerance", "0"], "tolerance"),
         (&["--tolerance", "1e-30"], "tolerance"),
         (&["--tolerance", "small"], "tolerance"),
-        (&["--method", "adaptive", "--kernel", "spectral"], "needs kernel love"),
+        (
+            &["--method", "adaptive", "--kernel", "spectral"],
+            "method: the method adaptive cannot be combined with the kernel spectral",
+        ),
         (&["--method", "adaptive", "--grid", "128x64"], "square elements"),
         (
             &["--method", "adaptive", "--grid", "66"],
             "for 66 x 66; other numbers of elements may have one, and multiples of 16 do",
         ),
         (&["--method", "adaptive", "--waves", "24", "--grid", "96"], "at least 98 elements"),
-        (&["--border-level", "1", "--grid", "130"], "needs a grid that can be halved several times"),
+        (
+            &["--border-level", "1", "--grid", "130"],
+            "a border level cannot be combined with a grid that cannot be halved several times",
+        ),
         (&["--method", "adaptive", "--tolerance", "1e-13"], "tolerance"),
         (&["--memory-limit", "100kB"], "memory_limit"),
         (&["--memory-limit", "100kB", "--method", "uniform"], "memory_limit"),

@@ -72,5 +72,8 @@ fn a_load_that_the_hardness_does_not_bear_is_refused_in_one_line() {
         assert_refused(&output, words);
         assert!(text(&output.stderr).contains("hardness"), "{}", text(&output.stderr));
     }
-    assert_refused(&place.run(&small("4e5", &["--hardness", "4e6", "--method", "gauss-seidel"])), "hardness");
+    assert_refused(
+        &place.run(&small("4e5", &["--hardness", "4e6", "--method", "gauss-seidel"])),
+        "method: the method gauss-seidel cannot be combined with a hardness",
+    );
 }

@@ -186,11 +186,23 @@ fn a_layer_leaks_and_has_no_conductance() {
 fn what_does_not_go_with_a_patch_is_refused() {
     let place = place();
     for (more, expected) in [
-        (&["--kernel", "spectral"][..], "kernel: spectral waves are periodic"),
-        (&["--method", "gauss-seidel"], "method: 'gauss-seidel' solves on a periodic cell only"),
+        (
+            &["--kernel", "spectral"][..],
+            "kernel: the kernel spectral cannot be combined with free borders: its waves are periodic",
+        ),
+        (
+            &["--method", "gauss-seidel"],
+            "method: the method gauss-seidel cannot be combined with free borders: it solves on a periodic cell only; give adaptive or uniform",
+        ),
         (&["--border-level", "1"], "a map has no heights between its points"),
-        (&["--layer-thickness", "1e-3", "--layer-poisson", "0.3"], "boundary: a layer has no free borders"),
-        (&["--leakage"], "leakage: the flow is computed on a periodic cell only; omit leakage or boundary"),
+        (
+            &["--layer-thickness", "1e-3", "--layer-poisson", "0.3"],
+            "boundary: free borders cannot be combined with an elastic layer",
+        ),
+        (
+            &["--leakage"],
+            "leakage: the flow through the gap cannot be combined with free borders: the flow is computed on a periodic cell only; omit one of the two",
+        ),
         (&["--penetration", "-1"], "penetration"),
         (&["--boundary", "open"], "boundary"),
     ] {

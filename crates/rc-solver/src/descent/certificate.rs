@@ -64,13 +64,17 @@ impl Certificate {
     /// Whether the bound is met, and the load is within [`Certificate::LOAD_TOLERANCE`].
     #[must_use]
     pub fn meets(&self, bound: ErrorBound) -> bool {
-        let error = match bound {
-            ErrorBound::Energy(_) => self.energy,
-            ErrorBound::Relative(_) => self.penetration.max(self.complementarity),
-        };
         // NaN meets no bound. A number beside a NaN does not count either.
         let is_number = !self.penetration.is_nan();
-        is_number && error <= bound.value() && self.load <= Self::LOAD_TOLERANCE
+        is_number && self.error(bound) <= bound.value() && self.load <= Self::LOAD_TOLERANCE
+    }
+
+    /// The error that `bound` limits.
+    pub(crate) fn error(&self, bound: ErrorBound) -> f64 {
+        match bound {
+            ErrorBound::Energy(_) => self.energy,
+            ErrorBound::Relative(_) => self.penetration.max(self.complementarity),
+        }
     }
 
     /// The certificate of an exact solution.

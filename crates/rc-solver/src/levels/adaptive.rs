@@ -23,9 +23,11 @@ use crate::levels::params::AdaptiveParams;
 use crate::levels::setup::{Given, Place, Splits};
 use crate::problem::adaptive_error::AdaptiveError;
 use crate::problem::bounds::Bounds;
+use crate::problem::capabilities::{Feature, refusal};
 use crate::problem::checked::Problem;
 #[cfg(test)]
 use crate::problem::control::Control;
+use crate::problem::method::Method;
 use crate::problem::support::Support;
 use crate::solution::gap_part::GapPart;
 use crate::tiles::bands::Receiver;
@@ -97,19 +99,13 @@ impl<'a> AdaptiveProblem<'a> {
         params: &AdaptiveParams,
         place: &Place,
     ) -> Result<Self, AdaptiveError> {
-        let needs = [
-            (params.border_level == 0, "elements of one size, without a border level"),
-            (!bounds.hardness.is_finite(), "a problem without a hardness"),
-            (ground.heights.ladder().is_even(), "a grid that halves down to its base grid"),
-        ];
-        if let Some((_, needs)) = needs.into_iter().find(|(is_met, _)| place.is_shared() && !is_met) {
-            return Err(AdaptiveError::OverRanks { needs });
-        }
         let split = first_split(params)?;
         let support = Support { boundary: ground.boundary(), compliance: 0.0 };
         let problem = Problem::of_statistics(ground.heights.extremes(), bounds, &params.solve, support)?;
-        if problem.h_range == 0.0 {
-            return Err(AdaptiveError::Flat);
+        if problem.h_range == 0.0
+            && let Some(refusal) = refusal(&[Feature::Flat], Some(Method::Adaptive))
+        {
+            return Err(refusal.into());
         }
         let prepared = Self { ground: Arc::clone(ground), problem, params: *params, split, place: place.clone() };
         let grid = prepared.grid();

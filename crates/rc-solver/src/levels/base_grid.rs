@@ -32,7 +32,7 @@ const SLOPE_KEPT: f64 = 0.8;
 /// Checks or chooses the sides of the base grid, in elements.
 ///
 /// If the elements along x are `wanted`, those along y are in proportion.
-pub(super) fn base_sides(
+pub(crate) fn base_sides(
     source: &HeightSource<'_>,
     wanted: Option<usize>,
     boundary: Boundary,

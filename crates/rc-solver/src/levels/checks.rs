@@ -1,12 +1,11 @@
 //! The conditions that a problem must meet for the adaptive method, checked before any work.
 
-use rc_core::{DVec2, Grid, HeightSource};
+use rc_core::{Grid, HeightSource};
 use rc_kernel::SplitParams;
 
 use crate::levels::params::AdaptiveParams;
 use crate::problem::adaptive_error::AdaptiveError;
 use crate::problem::tolerance::ErrorBound;
-use crate::tiles::ladder::has_squares;
 use crate::tiles::split::GapSplit;
 
 /// Error of L that descents may have, as a multiple of a relative tolerance.
@@ -25,12 +24,6 @@ const OPERATOR_ERROR_PER_ENERGY: f64 = 0.5;
 /// Maximum number of the smallest elements per side. Indices of tiles are 32-bit numbers.
 const DEEPEST_SIDE: usize = 1 << 17;
 
-/// Refuses elements that are not squares.
-pub(super) fn check_elements(grid: Grid) -> Result<(), AdaptiveError> {
-    let DVec2 { x, y } = grid.spacing();
-    if has_squares(grid) { Ok(()) } else { Err(AdaptiveError::Elements { grid, ratio: y / x }) }
-}
-
 /// The operator of descents, which follows from the tolerance alone.
 pub(super) fn first_split(params: &AdaptiveParams) -> Result<GapSplit, AdaptiveError> {
     let of_bound = match params.solve.bound {
@@ -42,24 +35,20 @@ pub(super) fn first_split(params: &AdaptiveParams) -> Result<GapSplit, AdaptiveE
         .ok_or(AdaptiveError::OperatorError { value: error, smallest: SplitParams::SMALLEST_ERROR })
 }
 
-/// The source of heights on the grid of the smallest elements.
+/// The source of heights on the grid of the smallest elements, on a square grid.
 pub(super) fn with_border_level(
     source: HeightSource<'_>,
     border_level: usize,
 ) -> Result<HeightSource<'_>, AdaptiveError> {
-    match source.surface() {
-        _ if border_level == 0 => Ok(source),
-        Some(surface) if surface.band_limit().is_some() && source.grid().is_square() => {
-            let side = source.grid().nx();
-            let finest = (border_level < 32).then(|| side.checked_shl(border_level as u32)).flatten();
-            let finest = finest.filter(|&finest| finest >> border_level == side && finest <= DEEPEST_SIDE);
-            let deepest = (DEEPEST_SIDE / side.max(1)).checked_ilog2().unwrap_or(0);
-            let finest = finest.ok_or(AdaptiveError::BorderLevel { border_level, side, deepest })?;
-            let grid = Grid::square(finest).expect("a side of at most the deepest one");
-            Ok(source.on_grid(grid))
-        }
-        _ => Err(AdaptiveError::BorderOfMap),
+    if border_level == 0 {
+        return Ok(source);
     }
+    let side = source.grid().nx();
+    let finest = (border_level < 32).then(|| side.checked_shl(border_level as u32)).flatten();
+    let finest = finest.filter(|&finest| finest >> border_level == side && finest <= DEEPEST_SIDE);
+    let deepest = (DEEPEST_SIDE / side.max(1)).checked_ilog2().unwrap_or(0);
+    let finest = finest.ok_or(AdaptiveError::BorderLevel { border_level, side, deepest })?;
+    Ok(source.on_grid(Grid::square(finest).expect("a side of at most the deepest one")))
 }
 
 /// Refuses a problem that needs more bytes than the limit.

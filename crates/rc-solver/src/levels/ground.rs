@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rc_core::{Boundary, HeightSource, Kernel, SplitByScale};
 
 use crate::levels::base_grid::base_sides;
-use crate::levels::checks::{check_elements, check_memory, first_split, with_border_level};
+use crate::levels::checks::{check_memory, first_split, with_border_level};
 use crate::levels::kernels::Kernels;
 use crate::levels::params::AdaptiveParams;
 use crate::levels::split::check_split;
@@ -38,7 +38,6 @@ impl<'a> Ground<'a> {
     ) -> Result<Self, AdaptiveError> {
         let grid = source.grid();
         let boundary = Support::of(kernel, grid).boundary;
-        check_elements(grid)?;
         // This check comes before any work.
         first_split(params)?;
         let base = base_sides(&source, params.base_side, boundary)?;
@@ -46,9 +45,6 @@ impl<'a> Ground<'a> {
         let ladder = Ladder::new(base, source.grid());
         let solid = Solid::new(kernel, split, Base::new(ladder, boundary))?;
         check_split(kernel, split, grid)?;
-        if params.border_level > 0 && !ladder.is_even() {
-            return Err(AdaptiveError::BorderOfGrid { grid });
-        }
         let sampled_bytes = Heights::sampled_bytes(&source, ladder);
         let kernels = Kernels::new(solid, params.border_level);
         check_memory(grid, params.memory_limit, base_bytes(kernels.base().period()) + sampled_bytes, None)?;

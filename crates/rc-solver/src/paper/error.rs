@@ -1,6 +1,5 @@
 //! Reasons why the paper's procedure cannot solve a problem.
 
-use rc_core::Grid;
 use rc_quadtree::paper::MeshError;
 use thiserror::Error;
 
@@ -15,15 +14,6 @@ pub enum GaussSeidelError {
     /// [`crate::solve()`] returns it as [`crate::SolveError::Problem`].
     #[error(transparent)]
     Problem(#[from] ProblemError),
-    /// The elements of the mesh are not squares in a square cell.
-    #[error(
-        "the mesh needs square elements in a square cell, not {grid} elements in a cell of 1 by {ratio}",
-        ratio = grid.cell_ratio()
-    )]
-    NotSquare {
-        /// Grid of the heights.
-        grid: Grid,
-    },
     /// The mesh cannot be made.
     #[error(transparent)]
     Mesh(#[from] MeshError),

@@ -23,11 +23,7 @@ const ESTIMATE_SIDE: usize = 256;
 /// Rough time of one coefficient from a table, for the message about the budget.
 const SECONDS_PER_COEFFICIENT: f64 = 2e-9;
 
-pub(super) fn check(heights: &Field, params: &GaussSeidelParams) -> Result<(), GaussSeidelError> {
-    let grid = heights.grid();
-    if !grid.is_square() {
-        return Err(GaussSeidelError::NotSquare { grid });
-    }
+pub(super) fn check(params: &GaussSeidelParams) -> Result<(), GaussSeidelError> {
     let bad = |what, wanted, value| Err(GaussSeidelError::Parameter { what, wanted, value });
     if !(params.relaxation > 0.0 && params.relaxation < 2.0) {
         return bad("the relaxation factor", "above 0 and below 2", params.relaxation);

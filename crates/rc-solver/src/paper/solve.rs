@@ -43,7 +43,7 @@ pub(crate) fn solve_gauss_seidel(
     (bound, params): (ErrorBound, &GaussSeidelParams),
     observer: &dyn Observer,
 ) -> Result<GridSolution, GaussSeidelError> {
-    estimate::check(heights, params)?;
+    estimate::check(params)?;
     let problem = Problem::check(heights, control, &IterationParams { bound, max_iterations: params.max_checks })?;
     let Estimate { penetration: expected, length } = estimate::estimate(heights, half_space, control, params)?;
     let tolerance = match bound {

@@ -4,6 +4,7 @@ use rc_core::Grid;
 use rc_core::quantity::digits;
 use thiserror::Error;
 
+use crate::problem::capabilities::Refusal;
 use crate::problem::error::ProblemError;
 
 /// A contact problem that the adaptive method cannot solve.
@@ -15,14 +16,11 @@ pub enum AdaptiveError {
     /// [`crate::solve()`] returns it as [`crate::SolveError::Problem`].
     #[error(transparent)]
     Problem(#[from] ProblemError),
-    /// The elements of the mesh are not squares.
-    #[error("the adaptive method needs square elements, but those of {grid} are {} % longer along {}", digits(100.0 * (ratio.max(ratio.recip()) - 1.0), 2), if *ratio > 1.0 { "y" } else { "x" })]
-    Elements {
-        /// The grid.
-        grid: Grid,
-        /// Ratio of the sides of an element, y to x.
-        ratio: f64,
-    },
+    /// A feature that the adaptive method excludes.
+    ///
+    /// [`crate::solve()`] returns it as [`crate::SolveError::Unsupported`].
+    #[error(transparent)]
+    Unsupported(#[from] Refusal),
     /// The grid has no base grid below it.
     #[error("{}", no_base_grid([*nx, *ny], *smallest))]
     Grid {
@@ -68,28 +66,6 @@ pub enum AdaptiveError {
         side: usize,
         /// The maximum border level.
         deepest: u32,
-    },
-    /// A border level on a grid that is not halved down to the base grid.
-    #[error(
-        "a border level needs a grid that can be halved several times: a small number times a large power of 2 along both sides, such as 1024 or 1536, not {grid}"
-    )]
-    BorderOfGrid {
-        /// The grid of the smallest elements.
-        grid: Grid,
-    },
-    /// A border level for heights that are known only on a grid.
-    #[error(
-        "a border level needs a surface of waves on a square grid; a map has no heights between its points, so resample it on a finer grid instead"
-    )]
-    BorderOfMap,
-    /// The surface is flat, so there is nothing to adapt to.
-    #[error("a flat surface needs no adaptive mesh; use the uniform method")]
-    Flat,
-    /// Several ranks (processes or threads) cannot solve this problem.
-    #[error("over several ranks the adaptive method needs {needs}; solve it on one rank")]
-    OverRanks {
-        /// The condition for several ranks.
-        needs: &'static str,
     },
     /// The estimated memory is above the limit.
     #[error("the adaptive method needs about {needed} MB {}, more than the limit of {limit} MB", needed_for(*area_percent))]

@@ -2,6 +2,7 @@
 
 pub(crate) mod adaptive_error;
 pub(crate) mod bounds;
+pub(crate) mod capabilities;
 pub(crate) mod checked;
 pub(crate) mod contact_problem;
 pub(crate) mod contract;
@@ -9,6 +10,7 @@ pub(crate) mod control;
 pub(crate) mod error;
 pub(crate) mod kernel;
 pub(crate) mod method;
+pub(crate) mod method_reason;
 pub(crate) mod params;
 pub(crate) mod support;
 pub(crate) mod tolerance;

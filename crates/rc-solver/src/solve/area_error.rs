@@ -1,7 +1,8 @@
 //! Finer and finer grids, until the contact area is as accurate as wanted.
 
-use rc_core::{Grid, HeightField, HeightSource, Observer};
+use rc_core::{Grid, HeightField, Observer};
 
+use crate::problem::capabilities::{Feature, refusal};
 use crate::problem::contact_problem::ContactProblem;
 use crate::solution::whole::Solution;
 use crate::solve::error::SolveError;
@@ -32,7 +33,7 @@ pub(super) fn solve<'a>(
     params: &SolveParams,
     observer: &dyn Observer,
 ) -> Result<Solution<'a>, SolveError> {
-    let waves = waves_of(&problem.heights)?;
+    let waves = waves_of(problem)?;
     let mut elements_per_wave = COARSEST;
     loop {
         let side = side(waves, elements_per_wave);
@@ -53,14 +54,25 @@ pub(super) fn solve<'a>(
 /// The first grid of the search.
 ///
 /// All later grids are finer. Their numbers of elements per side are multiples of the number on this one.
-pub(super) fn coarsest_grid(heights: &HeightSource<'_>) -> Result<Grid, SolveError> {
-    Ok(Grid::square(side(waves_of(heights)?, COARSEST))?)
+pub(super) fn coarsest_grid(problem: &ContactProblem<'_>) -> Result<Grid, SolveError> {
+    Ok(Grid::square(side(waves_of(problem)?, COARSEST))?)
 }
 
 /// The largest wavenumber of the surface, if its grid can be chosen.
-fn waves_of(heights: &HeightSource<'_>) -> Result<usize, SolveError> {
-    let surface = heights.surface().filter(|_| heights.grid().has_square_cell());
-    surface.and_then(HeightField::band_limit).filter(|&waves| waves > 0).ok_or(SolveError::NoWaves)
+fn waves_of(problem: &ContactProblem<'_>) -> Result<usize, SolveError> {
+    let heights = &problem.heights;
+    let waves = heights.surface().and_then(HeightField::band_limit).filter(|&waves| waves > 0);
+    let features = [
+        Some(Feature::AreaError),
+        waves.is_none().then_some(Feature::HeightMap),
+        (!heights.grid().has_square_cell()).then_some(Feature::OblongGrid),
+        problem.place.checkpoint.as_ref().map(|_| Feature::Checkpoint),
+    ];
+    let features: Vec<_> = features.into_iter().flatten().collect();
+    if let Some(refused) = refusal(&features, None) {
+        return Err(refused.into());
+    }
+    Ok(waves.expect("heights without waves are refused"))
 }
 
 /// Elements per side of the grid with `elements_per_wave` for the shortest wave.

@@ -4,19 +4,22 @@
 
 use std::sync::Arc;
 
-use rc_core::{Boundary, Grid, HeightField, HeightSource, SplitByScale};
+use rc_core::{Boundary, Grid, HeightField, HeightSource};
 
 use crate::grid::response::padded_side;
 use crate::levels::adaptive::AdaptiveProblem;
 use crate::levels::estimate::Estimate;
 use crate::levels::split::check_split;
 use crate::problem::adaptive_error::AdaptiveError;
+use crate::problem::capabilities::{Feature, Refusal};
 use crate::problem::checked::{check_load, check_tolerance};
 use crate::problem::contact_problem::ContactProblem;
 use crate::problem::contract::check_kernel;
-use crate::problem::method::{Method, MethodReason};
+use crate::problem::method::Method;
+use crate::problem::method_reason::MethodReason;
 use crate::problem::tolerance::ErrorBound;
 use crate::solve::error::SolveError;
+use crate::solve::features::{check_ranks, features, refusal_of};
 use crate::solve::memory::{bytes_per_element, check_uniform};
 use crate::solve::params::SolveParams;
 use crate::solve::plan::ChosenMethod;
@@ -37,23 +40,25 @@ pub(super) fn plan<'a>(
     if problem.boundary() == Boundary::Free {
         check_padded(problem.heights.grid())?;
     }
-    let choice = Choice { problem: &problem, params, bound, shared: &shared };
+    let features = features(&problem, params);
+    if let Some(refused) = refusal_of(&problem, &features, params.method) {
+        return Err(refused.into());
+    }
+    let choice = Choice { problem: &problem, params, bound, shared: &shared, features };
     let (chosen, reason) = match params.method {
-        None => choice.automatic(),
-        Some(method) => {
-            choice.check_asked_for(method)?;
-            let chosen = match method {
-                Method::Adaptive => {
-                    let split = choice.split().ok_or_else(|| choice.not_the_half_space(method))?;
-                    ChosenMethod::Adaptive(Box::new(choice.prepare(split)?))
-                }
-                Method::Uniform | Method::GaussSeidel => choice.on_grid(method)?,
-            };
-            Ok((chosen, MethodReason::AskedFor(method)))
+        None => choice.automatic()?,
+        Some(method @ Method::Adaptive) => {
+            (ChosenMethod::Adaptive(Box::new(choice.prepare()?)), MethodReason::AskedFor(method))
         }
-    }?;
-    if problem.place.is_shared() && !matches!(chosen, ChosenMethod::Adaptive(_)) {
-        return Err(SolveError::OneRank { reason });
+        Some(method) => {
+            if let Some(split) = problem.kernel.get().split().filter(|_| method == Method::GaussSeidel) {
+                check_split(problem.kernel.get(), split, problem.heights.grid())?;
+            }
+            (choice.on_grid(method)?, MethodReason::AskedFor(method))
+        }
+    };
+    if !matches!(chosen, ChosenMethod::Adaptive(_)) {
+        check_ranks(&problem, &reason)?;
     }
     Ok(Plan { problem, params: *params, bound, chosen, reason, shared })
 }
@@ -63,56 +68,27 @@ struct Choice<'a, 'b> {
     params: &'b SolveParams,
     bound: ErrorBound,
     shared: &'b Shared<'a>,
+    features: Vec<Feature>,
 }
 
 type Chosen<'a> = Result<(ChosenMethod<'a>, MethodReason), SolveError>;
 
 impl<'a> Choice<'a, '_> {
-    /// Refuses a method that cannot solve with this kernel, border level, hardness or boundary.
-    fn check_asked_for(&self, method: Method) -> Result<(), SolveError> {
-        match method {
-            Method::GaussSeidel if self.problem.hardness.is_finite() => Err(SolveError::Hardness { method }),
-            Method::GaussSeidel if self.is_free() => Err(SolveError::FreeBorders { method }),
-            Method::GaussSeidel => self.check_half_space(method).and_then(|()| self.check_border(method)),
-            Method::Uniform => self.check_border(method),
-            Method::Adaptive => Ok(()),
-        }
-    }
-
-    fn check_border(&self, method: Method) -> Result<(), SolveError> {
-        if self.params.border_level > 0 { Err(SolveError::BorderLevel { method }) } else { Ok(()) }
-    }
-
-    /// Refuses a kernel that is not that of Love's squares on the half-space.
-    fn check_half_space(&self, method: Method) -> Result<(), SolveError> {
-        let split = self.split().filter(|split| split.deviates_below(0.0) == 0.0);
-        let split = split.ok_or_else(|| self.not_the_half_space(method))?;
-        Ok(check_split(self.problem.kernel.get(), split, self.problem.heights.grid())?)
-    }
-
-    /// The split of the kernel. `None` for a solid on a base, which the adaptive method does not solve.
-    fn split(&self) -> Option<&dyn SplitByScale> {
-        let kernel = self.problem.kernel.get();
-        kernel.split().filter(|_| kernel.uniform_displacement().is_none())
-    }
-
     fn automatic(&self) -> Chosen<'a> {
-        let has_border = self.params.border_level > 0;
-        let Some(split) = self.split() else {
-            if has_border {
-                return Err(self.not_the_half_space(Method::Adaptive));
-            }
-            return Ok((self.on_grid(Method::Uniform)?, self.without_split()));
-        };
-        let adaptive = match self.prepare(split) {
+        if let Some(refusal) = self.excluded(Method::Adaptive) {
+            let method = Method::Uniform;
+            return Ok((self.on_grid(method)?, MethodReason::Only { method, refusal }));
+        }
+        let only = self.excluded(Method::Uniform);
+        let adaptive = match self.prepare() {
             Ok(adaptive) => adaptive,
-            Err(error) if has_border => return Err(error.into()),
+            Err(error) if only.is_some() => return Err(error.into()),
             Err(error) => return self.without_adaptive(error),
         };
         let percent = 100.0 * adaptive.estimate().area_fraction;
         let adaptive = ChosenMethod::Adaptive(Box::new(adaptive));
-        if has_border {
-            return Ok((adaptive, MethodReason::BorderLevel));
+        if let Some(refusal) = only {
+            return Ok((adaptive, MethodReason::Only { method: Method::Adaptive, refusal }));
         }
         if percent <= 100.0 * Estimate::GREATEST_ADAPTIVE_AREA {
             return Ok((adaptive, MethodReason::SmallContact { percent }));
@@ -125,36 +101,16 @@ impl<'a> Choice<'a, '_> {
         }
     }
 
-    fn boundary(&self) -> Boundary {
-        self.problem.boundary()
-    }
-
-    fn is_free(&self) -> bool {
-        self.boundary() == Boundary::Free
-    }
-
-    /// The error of a method that does not solve contacts of this solid.
-    fn not_the_half_space(&self, method: Method) -> SolveError {
-        let kernel = self.problem.kernel.get();
-        if kernel.uniform_displacement().is_some() {
-            SolveError::Solid { method }
-        } else {
-            SolveError::Kernel { method, kernel: kernel.name() }
-        }
-    }
-
-    /// Why a kernel without a split by scale is solved on the uniform grid.
-    fn without_split(&self) -> MethodReason {
-        let kernel = self.problem.kernel.get();
-        match kernel.uniform_displacement() {
-            Some(_) => MethodReason::Layer,
-            None => MethodReason::NoSplitOfKernel { kernel: kernel.name() },
-        }
+    /// What excludes a method. Ranks do not: see [`check_ranks`].
+    fn excluded(&self, method: Method) -> Option<Refusal> {
+        let alone: Vec<_> = self.features.iter().copied().filter(|&feature| feature != Feature::Ranks).collect();
+        refusal_of(self.problem, &alone, Some(method))
     }
 
     /// Prepares the adaptive method, if it fits the problem and the memory.
-    fn prepare(&self, split: &dyn SplitByScale) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
+    fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
         let (params, kernel) = (self.params.adaptive(self.bound), self.problem.kernel.get());
+        let split = kernel.split().expect("the table refuses kernels without a split");
         let ground = self.shared.ground(&self.problem.heights, kernel, split, &params)?;
         AdaptiveProblem::on(ground, self.problem.bounds(), &params, &self.problem.place)
     }
@@ -184,10 +140,11 @@ impl<'a> Choice<'a, '_> {
                 Some(percent) => Some(MethodReason::LargeContact { percent }),
                 None => self.params.method_follows_memory.then_some(MethodReason::AdaptiveDoesNotFit),
             },
-            AdaptiveError::Elements { .. } => Some(MethodReason::ElementsNotSquare { grid }),
             AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => Some(MethodReason::NoLevels { grid }),
             AdaptiveError::Deviation { kernel, .. } => Some(MethodReason::DeviationNotResolved { kernel }),
-            AdaptiveError::Flat => Some(MethodReason::Flat),
+            AdaptiveError::Unsupported(refusal) => {
+                Some(MethodReason::Only { method: Method::Uniform, refusal: refusal.clone() })
+            }
             AdaptiveError::OperatorError { .. } => {
                 Some(MethodReason::ToleranceTooSmall { tolerance: self.bound.value() })
             }
@@ -199,7 +156,7 @@ impl<'a> Choice<'a, '_> {
     fn on_grid(&self, method: Method) -> Result<ChosenMethod<'a>, SolveError> {
         check_uniform(
             self.problem.heights.grid(),
-            bytes_per_element(self.boundary()),
+            bytes_per_element(self.problem.boundary()),
             self.params.memory_limit,
             method,
         )?;

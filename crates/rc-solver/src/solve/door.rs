@@ -6,10 +6,12 @@ use rc_core::{Grid, HeightSource, Observer, Operator, Silent};
 
 use crate::descent::info::Status;
 use crate::grid::solve_with_operator::solve_on_grid;
+use crate::problem::capabilities::{Feature, refusal};
 use crate::problem::checked::check_tolerance;
 use crate::problem::contact_problem::ContactProblem;
 use crate::problem::control::Control;
-use crate::problem::method::{Method, MethodReason};
+use crate::problem::method::Method;
+use crate::problem::method_reason::MethodReason;
 use crate::solution::whole::HowSolved;
 use crate::solution::whole::Solution;
 use crate::solve::area_error;
@@ -43,9 +45,9 @@ impl<'a> ContactProblem<'a> {
     /// All later grids are finer. Their numbers of elements per side are multiples of the number on this one.
     ///
     /// # Errors
-    /// [`SolveError::NoWaves`], and [`SolveError::Grid`] for a surface with too many waves.
+    /// [`SolveError::Unsupported`], and [`SolveError::Grid`] for a surface with too many waves.
     pub fn coarsest_grid(&self) -> Result<Grid, SolveError> {
-        area_error::coarsest_grid(&self.heights)
+        area_error::coarsest_grid(self)
     }
 
     /// Solves the problem on finer grids until the contact area is accurate enough.
@@ -59,7 +61,7 @@ impl<'a> ContactProblem<'a> {
     /// longer than all others.
     ///
     /// # Errors
-    /// [`SolveError`]. [`SolveError::NoWaves`] for heights that cannot be sampled on another grid.
+    /// [`SolveError`]. [`SolveError::Unsupported`] for heights that cannot be sampled on another grid.
     /// [`SolveError::AreaError`] when 256 elements for the shortest wave are not enough.
     pub fn solve_to_area_error(
         self,
@@ -150,20 +152,22 @@ pub fn solve_with_operator<'a>(
     params: &SolveParams,
     observer: &dyn Observer,
 ) -> Result<Solution<'a>, SolveError> {
-    match params.method {
-        None | Some(Method::Uniform) if params.border_level > 0 => {
-            return Err(SolveError::BorderLevel { method: Method::Uniform });
-        }
-        None | Some(Method::Uniform) => {}
-        Some(method) => return Err(SolveError::Kernel { method, kernel: "operator" }),
+    let border = (params.border_level > 0).then_some(Feature::BorderLevel);
+    let features: Vec<_> = std::iter::once(Feature::OwnOperator).chain(border).collect();
+    if let Some(refused) = refusal(&features, params.method) {
+        return Err(refused.into());
     }
     let source = heights.into();
     let bound = params.tolerance.bound(source.elements_per_wave());
     check_tolerance(bound)?;
     let heights = source.heights();
+    let reason = match refusal(&features, Some(Method::Adaptive)) {
+        Some(refusal) => MethodReason::Only { method: Method::Uniform, refusal },
+        None => MethodReason::AskedFor(Method::Uniform),
+    };
     let limits = params.iteration(bound);
     let solution = solve_on_grid(&heights, operator, control, &limits, observer)?;
-    let how = HowSolved::new(Method::Uniform, MethodReason::OwnOperator, bound, "operator");
+    let how = HowSolved::new(Method::Uniform, reason, bound, "operator");
     let solution = Solution::with_operator(how, operator, solution, heights.max());
     if solution.status() == Status::NotConverged { Err(plan::not_converged(solution)) } else { Ok(solution) }
 }

@@ -6,8 +6,9 @@ use thiserror::Error;
 use crate::descent::certificate::Certificate;
 use crate::paper::error::GaussSeidelError;
 use crate::problem::adaptive_error::AdaptiveError;
+use crate::problem::capabilities::Refusal;
 use crate::problem::error::ProblemError;
-use crate::problem::method::{Method, MethodReason};
+use crate::problem::method::Method;
 use crate::solution::whole::Solution;
 
 /// A contact problem that was not solved.
@@ -23,46 +24,9 @@ pub enum SolveError {
     /// The Gauss-Seidel method (the paper's procedure) cannot solve this problem.
     #[error(transparent)]
     GaussSeidel(GaussSeidelError),
-    /// The method is only for Love's squares.
-    #[error("the {method} method needs the kernel love, not {kernel}")]
-    Kernel {
-        /// The method asked for.
-        method: Method,
-        /// Name of the kernel.
-        kernel: &'static str,
-    },
-    /// The chosen method cannot run over several ranks (processes or threads).
-    #[error("only the adaptive method runs on several ranks ({reason}); choose the adaptive method, or one rank")]
-    OneRank {
-        /// The method, and the reason to choose it.
-        reason: MethodReason,
-    },
-    /// The method is only for the half-space.
-    #[error("the {method} method solves on the half-space only, not on a layer")]
-    Solid {
-        /// The method asked for.
-        method: Method,
-    },
-    /// The method is only for a periodic cell.
-    #[error("the {method} method solves on a periodic cell only, not on a patch with free borders")]
-    FreeBorders {
-        /// The method asked for.
-        method: Method,
-    },
-    /// Smaller elements at contact edges were requested from a method without them.
-    ///
-    /// [`crate::SolveParams::border_level`] requests them.
-    #[error("the {method} method does not divide elements at contact edges; only the adaptive method does")]
-    BorderLevel {
-        /// The method asked for.
-        method: Method,
-    },
-    /// A hardness was given to a method that does not support it.
-    #[error("the {method} method does not support a hardness; the adaptive and uniform methods do")]
-    Hardness {
-        /// The method asked for.
-        method: Method,
-    },
+    /// A combination of features and method that cannot be solved.
+    #[error(transparent)]
+    Unsupported(#[from] Refusal),
     /// A method that stores fields on the whole grid exceeds the memory limit.
     #[error("the {method} method on {grid} elements needs about {needed} bytes, more than the limit of {limit}")]
     Memory {
@@ -86,11 +50,6 @@ pub enum SolveError {
         /// Largest wavenumber of the surface.
         waves: usize,
     },
-    /// A grid can be chosen only for a band-limited surface in a square cell.
-    #[error(
-        "a wanted area error can choose the grid only for a band-limited surface in a square cell; a height map has its own grid"
-    )]
-    NoWaves,
     /// The finest grid that is tried is not accurate enough.
     #[error(
         "the relative error of the area cannot be reduced to {wanted}; with {side} elements per side it is {reached}"
@@ -129,6 +88,7 @@ impl From<AdaptiveError> for SolveError {
     fn from(error: AdaptiveError) -> Self {
         match error {
             AdaptiveError::Problem(error) => Self::Problem(error),
+            AdaptiveError::Unsupported(refusal) => Self::Unsupported(refusal),
             other => Self::Adaptive(other),
         }
     }

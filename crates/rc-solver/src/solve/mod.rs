@@ -5,6 +5,7 @@ pub(crate) mod choice;
 pub(crate) mod cost;
 pub(crate) mod door;
 pub(crate) mod error;
+pub(crate) mod features;
 pub(crate) mod memory;
 pub(crate) mod params;
 pub(crate) mod plan;

@@ -13,11 +13,13 @@ use crate::paper::half_space::HalfSpace;
 use crate::paper::params::GaussSeidelParams;
 use crate::paper::solve::solve_gauss_seidel;
 use crate::problem::contact_problem::ContactProblem;
-use crate::problem::method::{Method, MethodReason};
+use crate::problem::method::Method;
+use crate::problem::method_reason::MethodReason;
 use crate::problem::tolerance::ErrorBound;
 use crate::solution::whole::HowSolved;
 use crate::solution::whole::Solution;
 use crate::solve::error::SolveError;
+use crate::solve::features::check_ranks;
 use crate::solve::memory::{bytes_per_element, check_uniform};
 use crate::solve::params::SolveParams;
 use crate::solve::shared::Shared;
@@ -47,9 +49,10 @@ pub(crate) enum ChosenMethod<'a> {
 impl<'a> Plan<'a> {
     /// The chosen method.
     ///
-    /// If the adaptive method was chosen automatically, the uniform one may replace it. The solution on a coarse grid,
-    /// the base grid, decides this. The uniform method takes over if contact is too scattered, or if pressures are too
-    /// rough for the tolerance. [`Solution::method`] returns the method that solved the problem.
+    /// If the adaptive method was chosen automatically, the uniform one may replace it. It takes over if the solution
+    /// on a coarse grid, the base grid, shows that contact is too scattered or that pressures are too rough for the
+    /// tolerance. It also takes over if the solution of the adaptive method is not certified. [`Solution::method`]
+    /// returns the method that solved the problem.
     #[must_use]
     pub fn method(&self) -> Method {
         match self.chosen {
@@ -80,15 +83,20 @@ impl<'a> Plan<'a> {
         let Self { problem, params, bound, chosen, reason, mut shared } = self;
         let name = problem.kernel.get().name();
         let how = |method, reason| HowSolved::new(method, reason, bound, name).with_hardness(problem.hardness);
-        let (chosen, reason) = match chosen {
-            ChosenMethod::Adaptive(adaptive) => match by_adaptive(&problem, &params, (&adaptive, &reason), observer)? {
-                Ok(solution) => {
-                    return converged(Solution::on_tiles(how(Method::Adaptive, reason), solution, adaptive));
+        let (before, chosen, reason) = match chosen {
+            ChosenMethod::Adaptive(adaptive) => {
+                let tried = by_adaptive(&problem, &params, (&adaptive, &reason), observer)?;
+                let found = |solution| Solution::on_tiles(how(Method::Adaptive, reason), solution, adaptive);
+                match tried {
+                    Tried::Solved(solution) => return converged(found(solution)),
+                    Tried::Left(reason) => {
+                        check_ranks(&problem, &reason)?;
+                        (None, ChosenMethod::Uniform, reason)
+                    }
+                    Tried::NotCertified(solution, reason) => (Some(found(solution)), ChosenMethod::Uniform, reason),
                 }
-                Err(reason) if problem.place.is_shared() => return Err(SolveError::OneRank { reason }),
-                Err(scattered) => (ChosenMethod::Uniform, scattered),
-            },
-            on_grid => (on_grid, reason),
+            }
+            on_grid => (None, on_grid, reason),
         };
         if let Some(shared) = Arc::get_mut(&mut shared) {
             shared.forget_ground();
@@ -103,36 +111,63 @@ impl<'a> Plan<'a> {
         };
         let how = how(method, reason);
         let h_max = heights.max();
-        converged(Solution::on_grid(how, problem.kernel, solution, h_max))
+        let solution = Solution::on_grid(how, problem.kernel, solution, h_max);
+        let error = |solution: &Solution<'_>| solution.certificate().error(bound);
+        match before {
+            // The uniform method did not end either, perhaps because the observer ended it.
+            Some(before) if solution.status() == Status::NotConverged && error(&before) < error(&solution) => {
+                converged(before)
+            }
+            _ => converged(solution),
+        }
     }
 }
 
-/// The solution of the adaptive method, or the reason to take the uniform method instead.
+/// What the adaptive method did, and why the uniform method takes over.
+enum Tried {
+    /// The solution is the result.
+    Solved(AdaptiveSolution),
+    /// The uniform method is better.
+    Left(MethodReason),
+    /// The uniform method may certify what this solution does not.
+    NotCertified(AdaptiveSolution, MethodReason),
+}
+
+/// Solves by the adaptive method, unless the uniform method is better.
 ///
-/// Only a method that an estimate chose is replaced. There are two reasons: contact turns out to be too scattered, or
-/// the adaptive operator cannot certify the tolerance. The uniform grid must then fit into memory.
+/// Only a method that an estimate chose is replaced. There are three reasons: contact turns out to be too scattered,
+/// the adaptive operator cannot certify the tolerance of such pressures, or it did not. The uniform grid must then fit
+/// into memory.
 fn by_adaptive(
     problem: &ContactProblem<'_>,
     params: &SolveParams,
     (adaptive, reason): (&AdaptiveProblem<'_>, &MethodReason),
     observer: &dyn Observer,
-) -> Result<Result<AdaptiveSolution, MethodReason>, SolveError> {
+) -> Result<Tried, SolveError> {
     let (bytes, kernel) = (bytes_per_element(problem.boundary()), problem.kernel.get());
     let uniform_fits = check_uniform(problem.heights.grid(), bytes, params.memory_limit, Method::Uniform);
     let may_change = matches!(reason, MethodReason::SmallContact { .. });
     // If the method may not follow memory, a load is solved in the same way on every machine, or refused.
     if !may_change || uniform_fits.is_err() && params.method_follows_memory {
-        return Ok(Ok(adaptive.solve(kernel, observer)));
+        return Ok(Tried::Solved(adaptive.solve(kernel, observer)));
     }
-    let unsuitable = match adaptive.solve_if_suitable(kernel, observer) {
-        Ok(solution) => return Ok(Ok(solution)),
-        Err(unsuitable) => unsuitable,
+    let tolerance = adaptive.bound().value();
+    let tried = match adaptive.solve_if_suitable(kernel, observer) {
+        Err(Unsuitable::Scattered { tile_fraction }) => {
+            Tried::Left(MethodReason::ScatteredContact { percent: 100.0 * tile_fraction })
+        }
+        Err(Unsuitable::Rough) => Tried::Left(MethodReason::ToleranceTooSmall { tolerance }),
+        Ok(solution) if solution.status() == Status::NotConverged => {
+            if observer.should_stop() || problem.place.is_shared() {
+                return Ok(Tried::Solved(solution));
+            }
+            let error = solution.info.certificate.error(adaptive.bound());
+            Tried::NotCertified(solution, MethodReason::NotCertified { error, tolerance })
+        }
+        Ok(solution) => return Ok(Tried::Solved(solution)),
     };
     uniform_fits?;
-    Ok(Err(match unsuitable {
-        Unsuitable::Scattered { tile_fraction } => MethodReason::ScatteredContact { percent: 100.0 * tile_fraction },
-        Unsuitable::Rough => MethodReason::ToleranceTooSmall { tolerance: adaptive.bound().value() },
-    }))
+    Ok(tried)
 }
 
 /// The solution, or the error that carries it.

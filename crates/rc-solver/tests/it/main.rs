@@ -1,7 +1,9 @@
 //! The methods against slow references and against themselves, in one binary.
 
+mod capabilities;
 mod error_bars;
 mod gauss_seidel;
+mod handover;
 mod hardness;
 mod hardness_of_solids;
 mod observers;

@@ -5,15 +5,15 @@ use std::sync::Arc;
 use rc_comm::Ranks;
 use rc_core::{Boundary, Elasticity, Kernel, PeriodicCell, UnitError, Units};
 use rc_kernel::{FreeLove, Layer, Love, LoveLayer, Spectral, SpectralLayer};
-use rc_solver::{Control, Method, SolveParams, Tolerance};
+use rc_solver::{Control, Feature, SolveParams, Tolerance};
 
 use super::checks::{missing, positive};
-use super::{elastic_layer, free_borders};
+use super::elastic_layer;
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
-use crate::scene::file;
 use crate::scene::keys::{ContactKeys, KernelName};
 use crate::scene::values::ToleranceSpec;
+use crate::scene::{features, file};
 
 /// A checked contact: half-space, load and method.
 #[derive(Clone, Debug)]
@@ -90,16 +90,14 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     let keys = elastic_layer::with_poisson(keys)?;
     let defaults = ContactKeys { pressure: None, penetration: None, method: None, ..file::example().contact };
     let keys = keys.over(defaults);
-    if keys.area_error.is_some() {
-        return Err(CliError::input("area_error: works only in rc solve, for random surfaces; give grid instead"));
-    }
     let units = Units::new(cell, elasticity(&keys)?);
     let control = control(&keys, units)?;
     let hardness = hardness(&keys, units)?;
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
-    check_method(&keys, kernel)?;
-    let boundary = free_borders::boundary(&keys, kernel)?;
-    let layer = elastic_layer::layer(&keys, kernel, cell.side())?;
+    // A single solve has removed a wanted error of the area, and has a check of its own.
+    features::check(&keys, [Feature::Sweep])?;
+    let boundary = keys.boundary.unwrap_or_default();
+    let layer = elastic_layer::layer(&keys, cell.side())?;
     let params = SolveParams {
         tolerance: tolerance(&keys)?,
         method: keys.method,
@@ -134,29 +132,6 @@ fn hardness(keys: &ContactKeys, units: Units) -> Result<f64, CliError> {
         hardness = hardness.next_down();
     }
     Ok(hardness)
-}
-
-/// Refuses a method that cannot solve with this kernel, border level or hardness.
-fn check_method(keys: &ContactKeys, kernel: KernelName) -> Result<(), CliError> {
-    if let (Some(method @ (Method::Adaptive | Method::GaussSeidel)), KernelName::Spectral | KernelName::Own) =
-        (keys.method, kernel)
-    {
-        return Err(CliError::input(format_args!(
-            "method: '{method}' needs kernel love; only the uniform method takes spectral"
-        )));
-    }
-    if let (Some(Method::GaussSeidel), Some(_)) = (keys.method, keys.hardness) {
-        return Err(CliError::input(
-            "hardness: the method 'gauss-seidel' does not support it; adaptive and uniform do",
-        ));
-    }
-    match (keys.border_level, keys.method, kernel) {
-        (Some(1..), Some(Method::Uniform | Method::GaussSeidel), _)
-        | (Some(1..), _, KernelName::Spectral | KernelName::Own) => Err(CliError::input(
-            "border_level: only the adaptive method, with kernel love, halves elements at the edges of contacts",
-        )),
-        _ => Ok(()),
-    }
 }
 
 fn elasticity(keys: &ContactKeys) -> Result<Elasticity, CliError> {
@@ -227,7 +202,7 @@ mod tests {
             ("hardness = nan", "hardness"),
             ("hardness = inf", "hardness"),
             ("hardness = 1.0", "hardness"),
-            ("hardness = 2.0\nmethod = \"gauss-seidel\"", "hardness"),
+            ("hardness = 2.0\nmethod = \"gauss-seidel\"", "method"),
             ("energy_tolerance = 1.0", "energy_tolerance"),
             ("energy_tolerance = nan", "energy_tolerance"),
             ("tolerance = 1e-6\nenergy_tolerance = 1e-3", "energy_tolerance"),

@@ -2,7 +2,6 @@
 
 use rc_core::Grid;
 use rc_kernel::{Layer, THINNEST_LAYER};
-use rc_solver::Method;
 
 use super::checks::positive;
 use crate::error::CliError;
@@ -33,26 +32,13 @@ fn check_ratio(poisson: f64) -> Result<(), CliError> {
 }
 
 /// The layer in units of the cell side; `None` for a half-space.
-pub(super) fn layer(keys: &ContactKeys, kernel: KernelName, side: f64) -> Result<Option<Layer>, CliError> {
+pub(super) fn layer(keys: &ContactKeys, side: f64) -> Result<Option<Layer>, CliError> {
     let Some(thickness) = keys.layer_thickness else { return Ok(None) };
     let thickness = positive("layer_thickness", "m", Some(thickness))? / side;
     let poisson = keys.layer_poisson.or(keys.poisson).ok_or_else(|| {
         CliError::input("layer_poisson: is missing; e_star does not contain Poisson's ratio of the layer")
     })?;
     check_ratio(poisson)?;
-    if kernel == KernelName::Own {
-        return Err(CliError::input(
-            "layer_thickness: the function given as kernel already describes the solid; omit one of the two",
-        ));
-    }
-    if let Some(method @ (Method::Adaptive | Method::GaussSeidel)) = keys.method {
-        return Err(CliError::input(format_args!(
-            "method: '{method}' solves on the half-space only; give uniform for a layer, or omit it"
-        )));
-    }
-    if keys.border_level.is_some_and(|level| level > 0) {
-        return Err(CliError::input("border_level: only the adaptive method, on a half-space, has it; omit it"));
-    }
     Ok(Some(Layer { thickness, poisson }))
 }
 

@@ -5,7 +5,6 @@
 mod checks;
 mod contact;
 mod elastic_layer;
-mod free_borders;
 mod layers;
 mod map;
 mod surface;
