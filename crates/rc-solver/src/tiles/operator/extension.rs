@@ -1,10 +1,11 @@
 //! The approximate inverse of L among the active elements of a mesh.
 //!
-//! [`crate::grid::extension`] has the extension F of a residual to the whole cell. On tiles, u = F r is kept level by level, as
-//! far as there are tiles. One share of u on a level comes from the means over active elements. The other share is P u
-//! of the next coarser level, where P is the interpolation. The base grid has u on the whole cell, and applies |q|/2 by
-//! its Fourier transform. Each level above adds its stencil of the difference w = u - P u, which is zero where nothing
-//! is active. The inverse is the sum of all levels with the transposes around them, so it is symmetric.
+//! [`crate::grid::extension`] has the extension F of a residual to the whole cell. On tiles, u = F r is kept level by
+//! level, as far as there are tiles. One share of u on a level comes from the means over active elements. The other
+//! share is P u of the next coarser level, where P is the interpolation. The base grid has u on the whole cell, and
+//! applies |q|/2 by its Fourier transform. Each level above adds its stencil of the difference w = u - P u, which is
+//! zero where nothing is active. The inverse is the sum of all levels with the transposes around them, so it is
+//! symmetric.
 //!
 //! The filters that L goes through between levels are not used here. They would see the ends of tiles as edges of u.
 //! With the extension and one grid, residuals fall by ten in an iteration. With two or three levels as here, they do so
