@@ -80,8 +80,8 @@ impl Descent<'_> {
         let [whole, with_gap, with_displacement] = self.layout.total(products);
         let curvature = range * with_displacement;
         let stiffness = whole * whole / (self.info.grid.len() as f64 * curvature);
-        self.knows_stiffness = curvature > 0.0 && stiffness.is_finite() && stiffness > 0.0;
-        if !self.knows_stiffness {
+        self.stiffness = (curvature > 0.0 && stiffness.is_finite() && stiffness > 0.0).then_some(stiffness);
+        if self.stiffness.is_none() {
             return self.settle(sums);
         }
         corrections.set_mean(stiffness);
@@ -114,7 +114,7 @@ impl Descent<'_> {
         let n_cell = self.n_cell();
         let secant = sums.pressure * sums.pressure / (n_cell * sums.work());
         let stiffness = match sums.has_plastic() {
-            true if self.knows_stiffness => return,
+            true if self.stiffness.is_some() => return,
             true => self.stiffness_of_uniform(n_active, |_, active| active),
             false if sums.n_contact > LARGE_CONTACT * n_cell => {
                 self.stiffness_of_uniform(sums.n_contact, |p, _| p > 0.0).max(secant)

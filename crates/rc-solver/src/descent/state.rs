@@ -42,8 +42,8 @@ pub(crate) struct Descent<'a> {
     pub(crate) zero_gap: f64,
     /// Pressure above which elements are well inside contact.
     pub(crate) pressed: f64,
-    /// Whether the last step along p (1 - p/H) has found a stiffness for the mean.
-    pub(crate) knows_stiffness: bool,
+    /// The stiffness of the last step along p (1 - p/H), which preconditions the mean. `None` if it has none.
+    pub(crate) stiffness: Option<f64>,
     /// Whether a pressure was given to start from. The flag below says the same of the gap.
     pub(crate) has_start: bool,
     pub(crate) has_gap: bool,
@@ -94,7 +94,7 @@ impl<'a> Descent<'a> {
             is_chosen: false,
             zero_gap: 0.0,
             pressed: f64::INFINITY,
-            knows_stiffness: false,
+            stiffness: None,
             has_start,
             has_gap,
             info: LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 },
