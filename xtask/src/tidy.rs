@@ -15,6 +15,7 @@ mod named;
 mod packages;
 mod paper_map;
 mod prose;
+mod rooms;
 mod rust;
 mod snapshots;
 mod tags;
@@ -26,7 +27,7 @@ use rc_figures::repository::{self, Sources};
 
 /// Checks the rules of this repository that the compiler does not know.
 ///
-/// They are about dependency arrows, circles between modules, licences and versions of dependencies, paper map, guide,
+/// They are about dependency arrows, circles between modules, rooms of the solver, licences and versions of dependencies, paper map, guide,
 /// snapshots and house rules. The numbers of docs/reproduction.md, docs/gfmd.md, docs/challenge.md, docs/benchmarks.md
 /// and README.md are checked too. It is also a test, so `cargo xtask test` runs it.
 #[derive(clap::Args)]
@@ -43,6 +44,7 @@ type Check = fn(&Sources) -> Vec<Complaint>;
 const CHECKS: &[(&str, Check)] = &[
     ("arrows", arrows::check),
     ("circles", circles::check),
+    ("rooms", rooms::check),
     ("paper map", paper_map::check),
     ("equations", tags::check),
     ("snapshots", snapshots::check),

@@ -4,7 +4,7 @@ use rc_core::{Field, Grid};
 use rc_quadtree::paper::{Mesh, Square};
 
 use crate::descent::certificate::Certificate;
-use crate::solution::contact_element::ContactElement;
+use crate::descent::contact_element::ContactElement;
 
 /// How a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

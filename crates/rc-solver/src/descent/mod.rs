@@ -13,6 +13,7 @@
 //! range H, so no scene underflows.
 
 pub(crate) mod certificate;
+pub(crate) mod contact_element;
 pub(crate) mod descending_round;
 pub(crate) mod directions;
 pub(crate) mod gap;
@@ -30,5 +31,6 @@ pub(crate) mod run;
 pub(crate) mod shares;
 pub(crate) mod start;
 pub(crate) mod state;
+pub(crate) mod stiffness;
 pub(crate) mod stop;
 pub(crate) mod sums;

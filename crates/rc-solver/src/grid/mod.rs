@@ -14,4 +14,5 @@ pub(crate) mod passes;
 pub(crate) mod prolongation;
 pub(crate) mod response;
 pub(crate) mod solve_with_operator;
+pub(crate) mod stiffness;
 pub(crate) mod uniform_operator;

@@ -8,13 +8,13 @@ use crate::descent::certificate::Certificate;
 use crate::descent::info::{GridSolution, LevelInfo, SolveInfo, Status};
 use crate::descent::run::{DescentObserver, Goal};
 use crate::descent::state::{Descent, Start};
+use crate::descent::stiffness::stiffness_of;
 use crate::grid::any_operator::operators_of;
 use crate::problem::checked::Problem;
 use crate::problem::contract::check_operator;
 use crate::problem::control::Control;
 use crate::problem::error::ProblemError;
 use crate::problem::params::IterationParams;
-use crate::solution::stiffness::stiffness_of;
 
 /// Maximum fault of an operator, divided by the overlap that a solve aims at.
 ///

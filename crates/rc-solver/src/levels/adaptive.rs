@@ -20,7 +20,7 @@ use crate::levels::level::SolvedLevel;
 use crate::levels::nested_iteration::{NestedIteration, NestedSolution};
 use crate::levels::operator_error::{PressureScale, can_certify, certifying_split};
 use crate::levels::params::AdaptiveParams;
-use crate::levels::setup::{Given, Place, Splits};
+use crate::levels::setup::{Given, Splits};
 use crate::problem::adaptive_error::AdaptiveError;
 use crate::problem::bounds::Bounds;
 use crate::problem::capabilities::{Feature, refusal};
@@ -28,6 +28,7 @@ use crate::problem::checked::Problem;
 #[cfg(test)]
 use crate::problem::control::Control;
 use crate::problem::method::Method;
+use crate::problem::place::Place;
 use crate::problem::support::Support;
 use crate::solution::gap_part::GapPart;
 use crate::tiles::bands::Receiver;

@@ -6,13 +6,13 @@ use rc_core::{Boundary, HeightSource, Kernel, SplitByScale};
 
 use crate::levels::base_grid::base_sides;
 use crate::levels::checks::{check_memory, first_split, with_border_level};
-use crate::levels::kernels::Kernels;
 use crate::levels::params::AdaptiveParams;
 use crate::levels::split::check_split;
 use crate::problem::adaptive_error::AdaptiveError;
 use crate::problem::support::Support;
 use crate::tiles::base::Base;
 use crate::tiles::heights::on_demand::Heights;
+use crate::tiles::kernels::Kernels;
 use crate::tiles::ladder::Ladder;
 use crate::tiles::memory::base_bytes;
 use crate::tiles::solid::Solid;

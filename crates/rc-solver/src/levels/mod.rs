@@ -8,7 +8,6 @@ pub(crate) mod checks;
 pub(crate) mod estimate;
 pub(crate) mod finest_level;
 pub(crate) mod ground;
-pub(crate) mod kernels;
 pub(crate) mod level;
 pub(crate) mod nested_grids;
 pub(crate) mod nested_iteration;

@@ -7,13 +7,13 @@ use rc_core::{Grid, Kernel};
 use rc_quadtree::{ContactFields, Elements, RING, divide};
 
 use crate::descent::load::mean_pressure;
-use crate::levels::checkpoint::Checkpoint;
 use crate::levels::ground::Ground;
 use crate::levels::params::AdaptiveParams;
 use crate::parallel;
 use crate::problem::checked::Problem;
 use crate::problem::control::Control;
 use crate::problem::params::IterationParams;
+use crate::problem::place::{Checkpoint, Place};
 use crate::tiles::base::Base;
 use crate::tiles::exclusion::{SmoothDisplacement, possible_contact};
 use crate::tiles::gap_operator::{GapOperator, GapTables, PreparedGap};
@@ -35,15 +35,6 @@ pub(crate) struct Splits {
     pub(crate) certified: GapSplit,
 }
 
-/// The place where a problem is solved.
-#[derive(Clone, Default)]
-pub(crate) struct Place {
-    /// Ranks that the mesh is dealt among.
-    pub(crate) ranks: Ranks,
-    /// Storage for the start of each level, if a solve is to be continued.
-    pub(crate) checkpoint: Option<Arc<dyn Checkpoint>>,
-}
-
 /// What a problem is solved with, whatever its load.
 #[derive(Clone, Copy)]
 pub(crate) struct Given<'a> {
@@ -51,13 +42,6 @@ pub(crate) struct Given<'a> {
     pub(crate) place: &'a Place,
     /// The kernel whose split the ground has.
     pub(crate) kernel: &'a dyn Kernel,
-}
-
-impl Place {
-    /// Whether several ranks share the problem.
-    pub(crate) fn is_shared(&self) -> bool {
-        self.ranks.size() > 1
-    }
 }
 
 /// Heights, load and operators of a problem.

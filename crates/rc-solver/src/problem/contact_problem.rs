@@ -6,11 +6,11 @@ use rc_comm::Ranks;
 use rc_core::{Boundary, HeightSource, Kernel};
 use rc_kernel::Love;
 
-use crate::levels::checkpoint::Checkpoint;
-use crate::levels::setup::Place;
 use crate::problem::bounds::Bounds;
 use crate::problem::control::Control;
 use crate::problem::kernel::OwnedKernel;
+use crate::problem::place::Checkpoint;
+use crate::problem::place::Place;
 use crate::problem::support::Support;
 
 /// A contact problem: heights, half-space and load.

@@ -12,5 +12,6 @@ pub(crate) mod kernel;
 pub(crate) mod method;
 pub(crate) mod method_reason;
 pub(crate) mod params;
+pub(crate) mod place;
 pub(crate) mod support;
 pub(crate) mod tolerance;

@@ -12,14 +12,14 @@ use crate::problem::contact_problem::ContactProblem;
 use crate::problem::control::Control;
 use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
-use crate::solution::whole::HowSolved;
-use crate::solution::whole::Solution;
 use crate::solve::area_error;
 use crate::solve::choice;
 use crate::solve::error::SolveError;
 use crate::solve::params::SolveParams;
 use crate::solve::plan;
 use crate::solve::plan::Plan;
+use crate::solve::solution::HowSolved;
+use crate::solve::solution::Solution;
 
 impl<'a> ContactProblem<'a> {
     /// Checks the problem and chooses its method, without solving.

@@ -9,7 +9,7 @@ use crate::problem::adaptive_error::AdaptiveError;
 use crate::problem::capabilities::Refusal;
 use crate::problem::error::ProblemError;
 use crate::problem::method::Method;
-use crate::solution::whole::Solution;
+use crate::solve::solution::Solution;
 
 /// A contact problem that was not solved.
 #[derive(Debug, Error)]

@@ -16,13 +16,13 @@ use crate::problem::contact_problem::ContactProblem;
 use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
 use crate::problem::tolerance::ErrorBound;
-use crate::solution::whole::HowSolved;
-use crate::solution::whole::Solution;
 use crate::solve::error::SolveError;
 use crate::solve::features::check_ranks;
 use crate::solve::memory::{bytes_per_element, check_uniform};
 use crate::solve::params::SolveParams;
 use crate::solve::shared::Shared;
+use crate::solve::solution::HowSolved;
+use crate::solve::solution::Solution;
 use crate::tiles::solution::AdaptiveSolution;
 
 /// A checked contact problem with its method. It is not solved yet.

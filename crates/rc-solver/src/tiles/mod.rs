@@ -9,6 +9,7 @@ pub(crate) mod element_heights;
 pub(crate) mod exclusion;
 pub(crate) mod gap_operator;
 pub(crate) mod heights;
+pub(crate) mod kernels;
 pub(crate) mod ladder;
 pub(crate) mod memory;
 pub(crate) mod mesh;

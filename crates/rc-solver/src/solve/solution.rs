@@ -6,6 +6,7 @@ use rc_comm::Ranks;
 use rc_core::{Field, Grid, Operator};
 
 use crate::descent::certificate::Certificate;
+use crate::descent::contact_element::ContactElement;
 use crate::descent::info::SolveInfo;
 use crate::descent::info::{GridSolution, Status};
 use crate::levels::adaptive::AdaptiveProblem;
@@ -14,10 +15,9 @@ use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
 use crate::problem::tolerance::ErrorBound;
 use crate::solution::contact_area::area::ContactArea;
-use crate::solution::contact_element::ContactElement;
-use crate::solution::elements;
 use crate::solution::observables::Observables;
-use crate::solution::response::Response;
+use crate::solve::elements;
+use crate::solve::response::Response;
 use crate::tiles::solution::AdaptiveSolution;
 
 /// A solved contact problem.

@@ -3,7 +3,7 @@
 use rc_comm::{Packed, Ranks};
 use rc_core::DVec2;
 
-use crate::solution::contact_element::ContactElement;
+use crate::descent::contact_element::ContactElement;
 
 /// Number of elements in a message.
 const AT_ONCE: usize = 1 << 16;

@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use rc_core::{Field, Grid};
 
 use crate::solution::gap_part::GapPart;
-use crate::solution::whole::{Pressures, Solution};
+use crate::solve::solution::{Pressures, Solution};
 use crate::tiles::bands::{Receiver, Rows};
 
 impl Solution<'_> {

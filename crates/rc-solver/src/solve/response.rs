@@ -6,10 +6,10 @@ use rc_core::{Boundary, EdgeBias, Field, Grid, Operator};
 
 use crate::descent::info::{GridSolution, Status};
 use crate::grid::solve_with_operator::stiffness_with_operator;
+use crate::grid::stiffness::contact_stiffness;
 use crate::grid::uniform_operator::UniformOperator;
 use crate::problem::kernel::OwnedKernel;
 use crate::problem::support::Support;
-use crate::solution::stiffness::contact_stiffness;
 
 /// The half-space that a solution on a grid was found with.
 pub(crate) enum Response<'a> {
