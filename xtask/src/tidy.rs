@@ -27,9 +27,10 @@ use rc_figures::repository::{self, Sources};
 
 /// Checks the rules of this repository that the compiler does not know.
 ///
-/// They are about dependency arrows, circles between modules, rooms of the solver, licences and versions of dependencies, paper map, guide,
-/// snapshots and house rules. The numbers of docs/reproduction.md, docs/gfmd.md, docs/challenge.md, docs/benchmarks.md
-/// and README.md are checked too. It is also a test, so `cargo xtask test` runs it.
+/// They are about dependency arrows, circles between modules, rooms of the solver, licences and versions of
+/// dependencies, paper map, guide, snapshots and house rules. The numbers of docs/reproduction.md, docs/gfmd.md,
+/// docs/challenge.md, docs/benchmarks.md and README.md are checked too. It is also a test, so `cargo xtask test` runs
+/// it.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Write the guide's table of what goes with what, from the solver's table

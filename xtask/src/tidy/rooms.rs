@@ -37,7 +37,7 @@ fn drawing(page: &str) -> Option<Vec<(String, BTreeSet<String>)>> {
 
 fn used(sources: &Sources) -> Arrows {
     let files = sources.iter().filter_map(|(path, text)| Some((path.strip_prefix(FOLDER)?.split_once('/')?, text)));
-    let files: Vec<_> = files.filter(|((_, file), _)| file.ends_with(".rs") && !file.contains("tests")).collect();
+    let files: Vec<_> = files.filter(|((_, file), _)| !file.contains("tests")).collect();
     let rooms: BTreeSet<&str> = files.iter().map(|((room, _), _)| *room).collect();
     let mut arrows = Arrows::new();
     for ((room, _), text) in files {

@@ -14,5 +14,6 @@ pub(crate) mod passes;
 pub(crate) mod prolongation;
 pub(crate) mod response;
 pub(crate) mod solve_with_operator;
+pub(crate) mod solved;
 pub(crate) mod stiffness;
 pub(crate) mod uniform_operator;

@@ -14,5 +14,6 @@ pub(crate) mod nested_iteration;
 pub(crate) mod operator_error;
 pub(crate) mod params;
 pub(crate) mod setup;
+pub(crate) mod solved;
 pub(crate) mod split;
 pub(crate) mod uniform;

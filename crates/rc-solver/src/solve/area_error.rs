@@ -4,9 +4,9 @@ use rc_core::{Grid, HeightField, Observer};
 
 use crate::problem::capabilities::{Feature, refusal};
 use crate::problem::contact_problem::ContactProblem;
+use crate::solution::whole::Solution;
 use crate::solve::error::SolveError;
 use crate::solve::params::SolveParams;
-use crate::solve::solution::Solution;
 
 /// Elements per shortest wave of the first grid.
 const COARSEST: usize = 4;

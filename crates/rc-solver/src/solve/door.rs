@@ -6,20 +6,21 @@ use rc_core::{Grid, HeightSource, Observer, Operator, Silent};
 
 use crate::descent::info::Status;
 use crate::grid::solve_with_operator::solve_on_grid;
+use crate::grid::solved::{GridSolved, Response};
 use crate::problem::capabilities::{Feature, refusal};
 use crate::problem::checked::check_tolerance;
 use crate::problem::contact_problem::ContactProblem;
 use crate::problem::control::Control;
 use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
+use crate::solution::whole::HowSolved;
+use crate::solution::whole::Solution;
 use crate::solve::area_error;
 use crate::solve::choice;
 use crate::solve::error::SolveError;
 use crate::solve::params::SolveParams;
 use crate::solve::plan;
 use crate::solve::plan::Plan;
-use crate::solve::solution::HowSolved;
-use crate::solve::solution::Solution;
 
 impl<'a> ContactProblem<'a> {
     /// Checks the problem and chooses its method, without solving.
@@ -168,6 +169,7 @@ pub fn solve_with_operator<'a>(
     let limits = params.iteration(bound);
     let solution = solve_on_grid(&heights, operator, control, &limits, observer)?;
     let how = HowSolved::new(Method::Uniform, reason, bound, "operator");
-    let solution = Solution::with_operator(how, operator, solution, heights.max());
+    let solved = GridSolved { solution, response: Response::Operator(operator), hardness: f64::INFINITY };
+    let solution = Solution::new(how, heights.max(), Box::new(solved));
     if solution.status() == Status::NotConverged { Err(plan::not_converged(solution)) } else { Ok(solution) }
 }

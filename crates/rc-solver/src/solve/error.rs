@@ -9,7 +9,7 @@ use crate::problem::adaptive_error::AdaptiveError;
 use crate::problem::capabilities::Refusal;
 use crate::problem::error::ProblemError;
 use crate::problem::method::Method;
-use crate::solve::solution::Solution;
+use crate::solution::whole::Solution;
 
 /// A contact problem that was not solved.
 #[derive(Debug, Error)]

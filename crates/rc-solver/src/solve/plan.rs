@@ -6,7 +6,9 @@ use rc_core::{Field, Observer};
 use rc_kernel::PeriodicLove;
 
 use crate::descent::info::{GridSolution, Status};
+use crate::grid::solved::{GridSolved, Response};
 use crate::levels::adaptive::{AdaptiveProblem, Unsuitable};
+use crate::levels::solved::TilesSolved;
 use crate::levels::uniform::solve_uniform;
 use crate::paper::error::GaussSeidelError;
 use crate::paper::half_space::HalfSpace;
@@ -16,13 +18,13 @@ use crate::problem::contact_problem::ContactProblem;
 use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
 use crate::problem::tolerance::ErrorBound;
+use crate::solution::whole::HowSolved;
+use crate::solution::whole::Solution;
 use crate::solve::error::SolveError;
 use crate::solve::features::check_ranks;
 use crate::solve::memory::{bytes_per_element, check_uniform};
 use crate::solve::params::SolveParams;
 use crate::solve::shared::Shared;
-use crate::solve::solution::HowSolved;
-use crate::solve::solution::Solution;
 use crate::tiles::solution::AdaptiveSolution;
 
 /// A checked contact problem with its method. It is not solved yet.
@@ -86,7 +88,8 @@ impl<'a> Plan<'a> {
         let (before, chosen, reason) = match chosen {
             ChosenMethod::Adaptive(adaptive) => {
                 let tried = by_adaptive(&problem, &params, (&adaptive, &reason), observer)?;
-                let found = |solution| Solution::on_tiles(how(Method::Adaptive, reason), solution, adaptive);
+                let (how, h_max) = (how(Method::Adaptive, reason), adaptive.h_max());
+                let found = |solution| Solution::new(how, h_max, Box::new(TilesSolved { solution, problem: adaptive }));
                 match tried {
                     Tried::Solved(solution) => return converged(found(solution)),
                     Tried::Left(reason) => {
@@ -111,7 +114,8 @@ impl<'a> Plan<'a> {
         };
         let how = how(method, reason);
         let h_max = heights.max();
-        let solution = Solution::on_grid(how, problem.kernel, solution, h_max);
+        let solved = GridSolved { solution, response: Response::Kernel(problem.kernel), hardness: problem.hardness };
+        let solution = Solution::new(how, h_max, Box::new(solved));
         let error = |solution: &Solution<'_>| solution.certificate().error(bound);
         match before {
             // The uniform method did not end either, perhaps because the observer ended it.

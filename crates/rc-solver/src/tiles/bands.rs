@@ -6,37 +6,9 @@ use std::ops::Range;
 
 use rc_quadtree::{CELLS, TILE, put_tile};
 
+use crate::solution::rows::Receiver;
 use crate::tiles::mesh::Mesh;
 use crate::tiles::part::{pack_tile, unpack_tiles};
-
-/// The receiver of the rows of a field.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Receiver {
-    /// Rank 0 gets all rows. Without other ranks it is the only one.
-    First,
-    /// Each rank gets some rows that follow each other.
-    Each,
-}
-
-/// The rows of a field that are handed out.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Rows {
-    /// Whether they are rows of the grid of the smallest elements. Ranks do not share these.
-    pub(crate) finest: bool,
-    pub(crate) receiver: Receiver,
-}
-
-impl Rows {
-    /// Rows of the grid on which the solution is a mean.
-    pub(crate) fn on_grid(receiver: Receiver) -> Self {
-        Self { finest: false, receiver }
-    }
-
-    /// Rows of the grid of the smallest elements.
-    pub(crate) fn finest() -> Self {
-        Self { finest: true, receiver: Receiver::First }
-    }
-}
 
 /// Minimum number of cells of a band.
 const BAND_CELLS: usize = 1_000_000;

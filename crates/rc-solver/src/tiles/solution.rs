@@ -15,7 +15,8 @@ use crate::descent::stiffness::{elastic_part, stiffness_pressure, stiffness_unde
 use crate::solution::contact_area::area::ContactArea;
 use crate::solution::contact_area::plastic::PlasticEdges;
 use crate::solution::observables::Observables;
-use crate::tiles::bands::{Receiver, Rows, bands, hand_out};
+use crate::solution::rows::{Receiver, Rows};
+use crate::tiles::bands::{bands, hand_out};
 use crate::tiles::base::Base;
 use crate::tiles::kernels::Kernels;
 use crate::tiles::mesh::Mesh;

@@ -3,22 +3,18 @@
 use std::sync::OnceLock;
 
 use rc_comm::Ranks;
-use rc_core::{Field, Grid, Operator};
+use rc_core::{Field, Grid};
 
 use crate::descent::certificate::Certificate;
 use crate::descent::contact_element::ContactElement;
-use crate::descent::info::SolveInfo;
-use crate::descent::info::{GridSolution, Status};
-use crate::levels::adaptive::AdaptiveProblem;
-use crate::problem::kernel::OwnedKernel;
+use crate::descent::info::{SolveInfo, Status};
 use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
 use crate::problem::tolerance::ErrorBound;
 use crate::solution::contact_area::area::ContactArea;
+use crate::solution::elements;
 use crate::solution::observables::Observables;
-use crate::solve::elements;
-use crate::solve::response::Response;
-use crate::tiles::solution::AdaptiveSolution;
+use crate::solution::solved::Solved;
 
 /// A solved contact problem.
 ///
@@ -32,9 +28,8 @@ use crate::tiles::solution::AdaptiveSolution;
 /// rank. [`Solution::elements`] returns the elements of the calling rank only.
 pub struct Solution<'a> {
     pub(crate) how: HowSolved,
-    pub(crate) status: Status,
     pub(crate) h_max: f64,
-    pub(crate) pressures: Pressures<'a>,
+    pub(crate) solved: Box<dyn Solved + 'a>,
     pub(crate) pressure: OnceLock<Field>,
     pub(crate) gap: OnceLock<Field>,
     pub(crate) plastic_gap: OnceLock<Field>,
@@ -64,52 +59,13 @@ impl HowSolved {
     }
 }
 
-/// Pressures on the grid, or on the tiles that contact touches.
-pub(crate) enum Pressures<'a> {
-    Grid {
-        solution: Box<GridSolution>,
-        response: Response<'a>,
-    },
-    Tiles {
-        solution: Box<AdaptiveSolution>,
-        /// The problem that was solved, with its heights.
-        problem: Box<AdaptiveProblem<'a>>,
-    },
-}
-
 impl<'a> Solution<'a> {
-    /// The solution of a method that stores fields on the whole grid.
-    pub(crate) fn on_grid(how: HowSolved, kernel: OwnedKernel<'a>, solution: GridSolution, h_max: f64) -> Self {
-        Self::of_grid(how, Response::Kernel(kernel), solution, h_max)
-    }
-
-    /// The solution with an operator of the caller.
-    pub(crate) fn with_operator(
-        how: HowSolved,
-        operator: &'a dyn Operator,
-        solution: GridSolution,
-        h_max: f64,
-    ) -> Self {
-        Self::of_grid(how, Response::Operator(operator), solution, h_max)
-    }
-
-    fn of_grid(how: HowSolved, response: Response<'a>, solution: GridSolution, h_max: f64) -> Self {
-        let status = solution.status;
-        Self::new(how, status, h_max, Pressures::Grid { solution: Box::new(solution), response })
-    }
-
-    /// The solution of the adaptive method.
-    pub(crate) fn on_tiles(how: HowSolved, solution: AdaptiveSolution, problem: Box<AdaptiveProblem<'a>>) -> Self {
-        let (status, h_max) = (solution.status(), problem.h_max());
-        Self::new(how, status, h_max, Pressures::Tiles { solution: Box::new(solution), problem })
-    }
-
-    fn new(how: HowSolved, status: Status, h_max: f64, pressures: Pressures<'a>) -> Self {
+    /// The solution of a solved level.
+    pub(crate) fn new(how: HowSolved, h_max: f64, solved: Box<dyn Solved + 'a>) -> Self {
         Self {
             how,
-            status,
             h_max,
-            pressures,
+            solved,
             pressure: OnceLock::new(),
             gap: OnceLock::new(),
             plastic_gap: OnceLock::new(),
@@ -125,23 +81,15 @@ impl<'a> Solution<'a> {
     /// ([`rc_core::Kernel::to_shared`]). If there is none, displacement and stiffness are computed now.
     #[must_use]
     pub fn into_owned(self) -> Solution<'static> {
-        let pressures = match self.pressures {
-            Pressures::Grid { solution, response } => {
-                let response = response.into_owned(&solution, self.how.hardness);
-                Pressures::Grid { solution, response }
-            }
-            Pressures::Tiles { solution, problem } => {
-                Pressures::Tiles { solution, problem: Box::new(problem.into_owned()) }
-            }
-        };
-        let Self { how, status, h_max, pressure, gap, plastic_gap, displacement, observables, stiffness, .. } = self;
-        Solution { how, status, h_max, pressures, pressure, gap, plastic_gap, displacement, observables, stiffness }
+        let Self { how, h_max, solved, pressure, gap, plastic_gap, displacement, observables, stiffness } = self;
+        let solved = solved.into_owned();
+        Solution { how, h_max, solved, pressure, gap, plastic_gap, displacement, observables, stiffness }
     }
 
     /// How the solve ended.
     #[must_use]
     pub fn status(&self) -> Status {
-        self.status
+        self.solved.status()
     }
 
     /// The method that has solved the problem.
@@ -173,10 +121,7 @@ impl<'a> Solution<'a> {
     /// The result contains the certificate, load, penetration, energy, and the work on each level.
     #[must_use]
     pub fn info(&self) -> &SolveInfo {
-        match &self.pressures {
-            Pressures::Grid { solution, .. } => &solution.info,
-            Pressures::Tiles { solution, .. } => &solution.info,
-        }
+        self.solved.info()
     }
 
     /// Bounds on the error, from a fresh application of L on the returned pressure.
@@ -188,20 +133,14 @@ impl<'a> Solution<'a> {
     /// The grid of the fields.
     #[must_use]
     pub fn grid(&self) -> Grid {
-        match &self.pressures {
-            Pressures::Grid { solution, .. } => solution.pressure.grid(),
-            Pressures::Tiles { solution, .. } => solution.grid(),
-        }
+        self.solved.grid()
     }
 
     /// The grid of the smallest elements.
     ///
     /// It is finer than [`Solution::grid`] if a border level was requested.
     pub(crate) fn finest_grid(&self) -> Grid {
-        match &self.pressures {
-            Pressures::Grid { solution, .. } => solution.pressure.grid(),
-            Pressures::Tiles { solution, .. } => solution.finest_grid(),
-        }
+        self.solved.finest_grid()
     }
 
     /// Maximum height on the grid of the smallest elements, in λ.
@@ -219,13 +158,7 @@ impl<'a> Solution<'a> {
     /// The observables: area, pressure, gap, energy.
     #[must_use]
     pub fn observables(&self) -> &Observables {
-        self.observables.get_or_init(|| match &self.pressures {
-            Pressures::Grid { solution, response } => {
-                let boundary = response.boundary(solution.pressure.grid());
-                Observables::of(solution, self.how.hardness, response.edge_bias(), boundary)
-            }
-            Pressures::Tiles { solution, .. } => solution.observables(),
-        })
+        self.observables.get_or_init(|| self.solved.observables())
     }
 
     /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ.
@@ -236,10 +169,7 @@ impl<'a> Solution<'a> {
     /// takes a few applications of L.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
-        *self.stiffness.get_or_init(|| match &self.pressures {
-            Pressures::Grid { solution, response } => response.stiffness(solution, self.how.hardness),
-            Pressures::Tiles { solution, problem } => problem.contact_stiffness(solution),
-        })
+        *self.stiffness.get_or_init(|| self.solved.stiffness())
     }
 
     /// Passes the elements of [`Solution::elements`] to `take`, in order.
@@ -262,10 +192,7 @@ impl<'a> Solution<'a> {
     /// The ranks that solved the problem. All of them call the functions of this solution together.
     #[must_use]
     pub fn ranks(&self) -> Ranks {
-        match &self.pressures {
-            Pressures::Grid { .. } => Ranks::alone(),
-            Pressures::Tiles { problem, .. } => problem.ranks().clone(),
-        }
+        self.solved.ranks()
     }
 
     /// Number of elements on which the solution states a pressure.
@@ -274,19 +201,13 @@ impl<'a> Solution<'a> {
     /// are the elements in contact. Elsewhere the pressure is zero.
     #[must_use]
     pub fn n_elements(&self) -> usize {
-        match &self.pressures {
-            Pressures::Grid { solution, .. } => solution.n_elements(),
-            Pressures::Tiles { solution, .. } => solution.n_elements(),
-        }
+        self.solved.counts().stated
     }
 
     /// Number of elements in contact.
     #[must_use]
     pub fn n_in_contact(&self) -> usize {
-        match &self.pressures {
-            Pressures::Grid { solution, .. } => solution.n_in_contact(),
-            Pressures::Tiles { solution, .. } => solution.n_elements(),
-        }
+        self.solved.counts().in_contact
     }
 
     /// The elements in contact, with their pressures, if the mesh is not the grid.
@@ -294,10 +215,7 @@ impl<'a> Solution<'a> {
     /// `None` for the uniform method. The adaptive and the Gauss-Seidel method have a mesh.
     #[must_use]
     pub fn elements(&self) -> Option<Box<dyn Iterator<Item = ContactElement> + '_>> {
-        match &self.pressures {
-            Pressures::Grid { solution, .. } => solution.elements.as_ref().map(|mesh| Box::new(mesh.elements()) as _),
-            Pressures::Tiles { solution, .. } => Some(Box::new(solution.elements())),
-        }
+        self.solved.elements()
     }
 
     /// Number of elements whose gap the certificate computed.
@@ -305,10 +223,7 @@ impl<'a> Solution<'a> {
     /// With border levels, they have several sizes.
     #[must_use]
     pub fn n_evaluated(&self) -> usize {
-        match &self.pressures {
-            Pressures::Grid { solution, .. } => solution.pressure.grid().len(),
-            Pressures::Tiles { solution, .. } => solution.evaluated,
-        }
+        self.solved.counts().evaluated
     }
 
     /// Number of elements of the smallest size that are proven to be out of contact.
@@ -316,17 +231,14 @@ impl<'a> Solution<'a> {
     /// Their gap was not computed. They are the rest of the cell.
     #[must_use]
     pub fn n_proven(&self) -> usize {
-        match &self.pressures {
-            Pressures::Grid { .. } => 0,
-            Pressures::Tiles { solution, .. } => solution.proven,
-        }
+        self.solved.counts().proven
     }
 }
 
 impl std::fmt::Debug for Solution<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let mut out = f.debug_struct("Solution");
-        out.field("how", &self.how).field("status", &self.status).field("grid", &self.grid());
+        out.field("how", &self.how).field("status", &self.status()).field("grid", &self.grid());
         out.field("info", self.info()).finish_non_exhaustive()
     }
 }

@@ -1,15 +1,20 @@
-//! The elastic response that a solution on a grid keeps for use after the solve.
+//! A solved grid, with the elastic response that later questions need.
 //!
 //! It may outlive the caller's kernel or operator.
 
 use rc_core::{Boundary, EdgeBias, Field, Grid, Operator};
 
-use crate::descent::info::{GridSolution, Status};
+use crate::descent::contact_element::ContactElement;
+use crate::descent::info::{GridSolution, SolveInfo, Status};
 use crate::grid::solve_with_operator::stiffness_with_operator;
 use crate::grid::stiffness::contact_stiffness;
 use crate::grid::uniform_operator::UniformOperator;
 use crate::problem::kernel::OwnedKernel;
 use crate::problem::support::Support;
+use crate::solution::gap_part::GapPart;
+use crate::solution::observables::Observables;
+use crate::solution::rows::{Halted, Receiver, Rows, TakeRows};
+use crate::solution::solved::{Counts, Solved};
 
 /// The half-space that a solution on a grid was found with.
 pub(crate) enum Response<'a> {
@@ -100,5 +105,71 @@ impl Response<'_> {
             Self::Operator(operator) => apply(*operator),
             Self::Outlived { displacement, .. } => displacement.clone(),
         }
+    }
+}
+
+/// A solution on a grid, with the half-space that it was found with.
+pub(crate) struct GridSolved<'a> {
+    pub(crate) solution: GridSolution,
+    pub(crate) response: Response<'a>,
+    /// The limit of the pressure. Infinite for an elastic contact.
+    pub(crate) hardness: f64,
+}
+
+impl Solved for GridSolved<'_> {
+    fn status(&self) -> Status {
+        self.solution.status
+    }
+
+    fn info(&self) -> &SolveInfo {
+        &self.solution.info
+    }
+
+    fn grid(&self) -> Grid {
+        self.solution.pressure.grid()
+    }
+
+    fn counts(&self) -> Counts {
+        Counts {
+            stated: self.solution.n_elements(),
+            in_contact: self.solution.n_in_contact(),
+            evaluated: self.grid().len(),
+            proven: 0,
+        }
+    }
+
+    fn elements(&self) -> Option<Box<dyn Iterator<Item = ContactElement> + '_>> {
+        self.solution.elements.as_ref().map(|mesh| Box::new(mesh.elements()) as _)
+    }
+
+    fn observables(&self) -> Observables {
+        let boundary = self.response.boundary(self.grid());
+        Observables::of(&self.solution, self.hardness, self.response.edge_bias(), boundary)
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.response.stiffness(&self.solution, self.hardness)
+    }
+
+    fn stored(&self) -> Option<[&Field; 2]> {
+        Some([&self.solution.pressure, &self.solution.gap])
+    }
+
+    fn pressure_rows(&self, _receiver: Receiver, take: TakeRows<'_>) -> Result<(), Halted> {
+        take(0, self.solution.pressure.values())
+    }
+
+    fn gap_rows(&self, part: GapPart, _rows: Rows, take: TakeRows<'_>) -> Result<(), Halted> {
+        part.rows((&self.solution.gap, &self.solution.pressure), self.hardness, take)
+    }
+
+    fn displacement_rows(&self, take: TakeRows<'_>) -> Result<(), Halted> {
+        take(0, self.response.displacement(&self.solution.pressure).values())
+    }
+
+    fn into_owned(self: Box<Self>) -> Box<dyn Solved> {
+        let Self { solution, response, hardness } = *self;
+        let response = response.into_owned(&solution, hardness);
+        Box::new(GridSolved { solution, response, hardness })
     }
 }

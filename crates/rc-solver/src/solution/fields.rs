@@ -5,8 +5,8 @@ use std::convert::Infallible;
 use rc_core::{Field, Grid};
 
 use crate::solution::gap_part::GapPart;
-use crate::solve::solution::{Pressures, Solution};
-use crate::tiles::bands::{Receiver, Rows};
+use crate::solution::rows::{Receiver, Rows, hand_out};
+use crate::solution::whole::Solution;
 
 impl Solution<'_> {
     /// The pressure on the grid, in E*, ≥ 0.
@@ -14,11 +14,9 @@ impl Solution<'_> {
     /// Where elements are smaller than those of the grid (at a border level), it is their mean.
     #[must_use]
     pub fn pressure(&self) -> &Field {
-        match &self.pressures {
-            Pressures::Grid { solution, .. } => &solution.pressure,
-            Pressures::Tiles { .. } => {
-                self.pressure.get_or_init(|| self.collect(self.grid(), |take| self.pressure_rows(take)))
-            }
+        match self.solved.stored() {
+            Some([pressure, _]) => pressure,
+            None => self.pressure.get_or_init(|| self.collect(self.grid(), |take| self.pressure_rows(take))),
         }
     }
 
@@ -27,8 +25,8 @@ impl Solution<'_> {
     /// It is zero in contact within the tolerance. If a hardness is set, it is the gap after plastic flow.
     #[must_use]
     pub fn gap(&self) -> &Field {
-        match &self.pressures {
-            Pressures::Grid { solution, .. } if self.how.hardness.is_infinite() => &solution.gap,
+        match self.solved.stored() {
+            Some([_, gap]) if self.how.hardness.is_infinite() => gap,
             _ => self.gap.get_or_init(|| self.collect(self.grid(), |take| self.gap_rows(take))),
         }
     }
@@ -40,14 +38,8 @@ impl Solution<'_> {
     /// application of L on the grid of the smallest elements.
     #[must_use]
     pub fn finest_gap(&self) -> Option<Field> {
-        match &self.pressures {
-            Pressures::Tiles { solution, problem } if self.finest_grid() != self.grid() => {
-                Some(self.collect(self.finest_grid(), |take| {
-                    problem.gap_rows(solution, GapPart::Both, Rows::finest(), take)
-                }))
-            }
-            _ => None,
-        }
+        let (finest, part) = (self.finest_grid(), GapPart::Both);
+        (finest != self.grid()).then(|| self.collect(finest, |take| self.part_rows(part, Rows::finest(), take)))
     }
 
     /// The overlap that plastic flow has removed, on the grid, in λ, ≥ 0.
@@ -63,11 +55,8 @@ impl Solution<'_> {
     /// The first call takes one application of L.
     #[must_use]
     pub fn displacement(&self) -> &Field {
-        self.displacement.get_or_init(|| match &self.pressures {
-            Pressures::Grid { solution, response } => response.displacement(&solution.pressure),
-            Pressures::Tiles { solution, problem } => {
-                self.collect(self.grid(), |take| problem.displacement_rows(solution, Receiver::First, take))
-            }
+        self.displacement.get_or_init(|| {
+            self.collect(self.grid(), |take| hand_out(take, |take| self.solved.displacement_rows(take)))
         })
     }
 
@@ -79,10 +68,9 @@ impl Solution<'_> {
     /// # Errors
     /// The error that `take` returns.
     pub fn pressure_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        match (&self.pressures, self.pressure.get()) {
-            (Pressures::Grid { solution, .. }, _) => take(0, solution.pressure.values()),
-            (_, Some(pressure)) => take(0, pressure.values()),
-            (Pressures::Tiles { solution, .. }, None) => solution.pressure_rows(Receiver::First, take),
+        match self.pressure.get() {
+            Some(pressure) => take(0, pressure.values()),
+            None => hand_out(take, |take| self.solved.pressure_rows(Receiver::First, take)),
         }
     }
 
@@ -93,10 +81,7 @@ impl Solution<'_> {
     /// # Errors
     /// The error that `take` returns.
     pub fn own_pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        match &self.pressures {
-            Pressures::Grid { .. } => self.pressure_rows(take),
-            Pressures::Tiles { solution, .. } => solution.pressure_rows(Receiver::Each, take),
-        }
+        hand_out(take, |take| self.solved.pressure_rows(Receiver::Each, take))
     }
 
     /// Passes the rows of [`Solution::gap`] to `take`, as [`Solution::pressure_rows`] does.
@@ -106,10 +91,10 @@ impl Solution<'_> {
     /// # Errors
     /// The error that `take` returns.
     pub fn gap_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        match (&self.pressures, self.gap.get()) {
-            (Pressures::Grid { solution, .. }, _) if self.how.hardness.is_infinite() => take(0, solution.gap.values()),
+        match (self.solved.stored(), self.gap.get()) {
+            (Some([_, gap]), _) if self.how.hardness.is_infinite() => take(0, gap.values()),
             (_, Some(gap)) => take(0, gap.values()),
-            _ => self.part_rows(GapPart::Open, Receiver::First, take),
+            _ => self.part_rows(GapPart::Open, Rows::on_grid(Receiver::First), take),
         }
     }
 
@@ -120,7 +105,7 @@ impl Solution<'_> {
     pub fn plastic_gap_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match self.plastic_gap.get() {
             Some(gap) => take(0, gap.values()),
-            None => self.part_rows(GapPart::Plastic, Receiver::First, take),
+            None => self.part_rows(GapPart::Plastic, Rows::on_grid(Receiver::First), take),
         }
     }
 
@@ -131,7 +116,7 @@ impl Solution<'_> {
     /// # Errors
     /// The error that `take` returns.
     pub fn own_gap_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        self.part_rows(GapPart::Open, Receiver::Each, take)
+        self.part_rows(GapPart::Open, Rows::on_grid(Receiver::Each), take)
     }
 
     /// A field on `grid` from its rows, which `rows` passes on in order.
@@ -154,12 +139,9 @@ impl Solution<'_> {
     fn part_rows<E>(
         &self,
         part: GapPart,
-        receiver: Receiver,
+        rows: Rows,
         take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        match &self.pressures {
-            Pressures::Grid { solution, .. } => part.rows((&solution.gap, &solution.pressure), self.how.hardness, take),
-            Pressures::Tiles { solution, problem } => problem.gap_rows(solution, part, Rows::on_grid(receiver), take),
-        }
+        hand_out(take, |take| self.solved.gap_rows(part, rows, take))
     }
 }
