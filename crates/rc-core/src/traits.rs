@@ -82,8 +82,8 @@ impl Default for EdgeBias {
 ///
 /// # What a solve checks
 /// Before it starts, a solve evaluates the symbol on its grid. If the grid has at most 512 waves, it does so at every
-/// wave. On larger grids it takes the longest waves, the shortest waves, and a sample of the others. The sample has 512
-/// waves or one in 64, whichever is more. The solve refuses a symbol with one of these faults:
+/// wave. On larger grids it takes the longest waves, the shortest waves, and a sample of the others. The sample has one
+/// wave in 64, but at least 512 and at most 65536. The solve refuses a symbol with one of these faults:
 ///
 /// - a value at a wave is NaN, infinite, zero or negative;
 /// - the value at the zero wave is not zero;
