@@ -130,7 +130,7 @@ def test_the_layer_as_a_function_is_the_layer_by_its_keywords(heights):
     # Two springs in series.
     soft = 1 / (1 / own.contact_stiffness + compressed / 1e6)
     assert named.contact_stiffness == pytest.approx(soft, rel=3e-3)
-    with pytest.raises(ValueError, match="layer_thickness: the function given as kernel"):
+    with pytest.raises(ValueError, match="layer_thickness: an elastic layer cannot be combined with a function as kernel"):
         rc.solve(heights, **CONTACT, kernel=layer, **keywords)
 
 
