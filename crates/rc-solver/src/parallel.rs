@@ -8,7 +8,6 @@ use std::mem;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use rayon::prelude::*;
-use rc_core::Field;
 
 /// Values in a block, unless something else decides.
 const BLOCK: usize = 4096;
@@ -47,10 +46,10 @@ pub(crate) fn update(values: &mut [f64], change: impl Fn(&mut f64) + Sync) {
     for_each(values.chunks_mut(BLOCK), |block| block.iter_mut().for_each(&change));
 }
 
-/// Root mean square of a field, as [`Field::rms`].
-pub(crate) fn rms(field: &Field) -> f64 {
-    let rows = map(field.values().chunks(field.grid().nx()), |row| row.iter().map(|v| v * v).sum::<f64>());
-    (rows.into_iter().sum::<f64>() / field.grid().len() as f64).sqrt()
+/// Root mean square of values that are summed in pieces of `len`.
+pub(crate) fn rms(values: &[f64], len: usize) -> f64 {
+    let pieces = map(values.chunks(len), |piece| piece.iter().map(|v| v * v).sum::<f64>());
+    (pieces.into_iter().sum::<f64>() / values.len() as f64).sqrt()
 }
 
 /// Zeros, in memory that is written at once.

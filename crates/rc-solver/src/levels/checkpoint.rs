@@ -7,23 +7,11 @@ use rc_core::{Boundary, Grid};
 use rc_quadtree::{CELLS, Elements, TILE, TileSet};
 
 use crate::descent::info::{LevelInfo, LevelValues};
+use crate::levels::nested::History;
+use crate::levels::tiles::TileStart;
 use crate::problem::place::Checkpoint;
 use crate::tiles::mesh::Mesh;
 use crate::tiles::prolongation::MeshStart;
-
-/// The start of a level above the base grid.
-pub(crate) struct LevelStart {
-    /// The whole grid of the level's smallest elements.
-    pub(crate) grid: Grid,
-    pub(crate) mesh: MeshStart,
-    pub(crate) contact_gap: f64,
-    /// U/σ0 of the level before, in λ.
-    pub(crate) energy_length: f64,
-    /// The work on coarser levels, coarsest first.
-    pub(crate) levels: Vec<LevelInfo>,
-    /// Values of the level before, when this is the finest one.
-    pub(crate) coarser: Option<LevelValues>,
-}
 
 /// Number of values about a start before those of its levels.
 ///
@@ -38,10 +26,10 @@ const MOST_TILES: f64 = 1e12;
 /// Number of tiles in a piece.
 const AT_ONCE: usize = 1 << 14;
 
-/// Keeps a start on elements of one size, and a number.
+/// Keeps a start on elements of one size, with the levels before it.
 ///
 /// All ranks call this together.
-pub(crate) fn keep(checkpoint: &dyn Checkpoint, start: &LevelStart, number: f64) {
+pub(crate) fn keep(checkpoint: &dyn Checkpoint, start: &TileStart, history: &History) {
     let mesh = &start.mesh.elements;
     if mesh.levels().len() > 1 {
         return;
@@ -54,7 +42,7 @@ pub(crate) fn keep(checkpoint: &dyn Checkpoint, start: &LevelStart, number: f64)
         }
         return;
     }
-    let head = [packed(&numbers(start, number)), packed(mesh.finest().places())];
+    let head = [packed(&numbers(start, history)), packed(mesh.finest().places())];
     let own = pressure.chunks(AT_ONCE * CELLS).map(packed);
     let others = (1..ranks.size()).flat_map(|rank| (0..n_pieces(rank)).map(move |_| rank));
     let others = others.map(|rank| ranks.exchange(Vec::new(), &[rank]).concat());
@@ -64,22 +52,26 @@ pub(crate) fn keep(checkpoint: &dyn Checkpoint, start: &LevelStart, number: f64)
     pieces.for_each(drop);
 }
 
-/// The kept start with its number. `None` if no start was kept.
+/// The kept start, and the levels before it. `None` if no start was kept.
 ///
 /// `grid` is any grid of the cell, with its `boundary`.
 pub(crate) fn kept(
     checkpoint: &dyn Checkpoint,
     (grid, boundary): (Grid, Boundary),
     ranks: &Ranks,
-) -> Option<(LevelStart, f64)> {
+) -> Option<(TileStart, History)> {
     let found = read(checkpoint, (grid, boundary), ranks);
     // Either all ranks go on from the same level, or they all start anew.
     if ranks.any(found.is_none()) { None } else { found }
 }
 
-fn read(checkpoint: &dyn Checkpoint, (grid, boundary): (Grid, Boundary), ranks: &Ranks) -> Option<(LevelStart, f64)> {
+fn read(
+    checkpoint: &dyn Checkpoint,
+    (grid, boundary): (Grid, Boundary),
+    ranks: &Ranks,
+) -> Option<(TileStart, History)> {
     let numbers = f64::unpack_all(&checkpoint.read(0, N_NUMBERS * f64::BYTES)?);
-    let &[n_tiles, nx, ny, contact_gap, energy_length, number, has_coarser, rms_pressure, penetration, n_levels] =
+    let &[n_tiles, nx, ny, contact_gap, energy_length, tile_fraction, has_coarser, rms_pressure, penetration, n_levels] =
         numbers.as_slice()
     else {
         return None;
@@ -115,21 +107,26 @@ fn read(checkpoint: &dyn Checkpoint, (grid, boundary): (Grid, Boundary), ranks: 
     let pressure = f64::unpack_all(&checkpoint.read(offset, own.len() * f64::BYTES)?);
     let mesh = MeshStart { elements, pressure };
     let coarser = (has_coarser > 0.0).then_some(LevelValues { rms_pressure, penetration });
-    Some((LevelStart { grid, mesh, contact_gap, energy_length, levels, coarser }, number))
+    Some((TileStart { grid, mesh, contact_gap, energy_length, tile_fraction }, History { levels, coarser }))
 }
 
-fn numbers(start: &LevelStart, number: f64) -> Vec<f64> {
-    let LevelStart { grid, mesh, contact_gap, energy_length, levels, coarser } = start;
-    let of_coarser = match coarser {
-        Some(LevelValues { rms_pressure, penetration }) => [1.0, *rms_pressure, *penetration],
+fn numbers(start: &TileStart, history: &History) -> Vec<f64> {
+    let TileStart { grid, mesh, contact_gap, energy_length, tile_fraction } = start;
+    let of_coarser = match history.coarser {
+        Some(LevelValues { rms_pressure, penetration }) => [1.0, rms_pressure, penetration],
         None => [0.0; 3],
     };
     let head = [mesh.elements.finest().len() as f64, grid.nx() as f64, grid.ny() as f64, *contact_gap, *energy_length];
-    let of_levels = levels.iter().flat_map(|level| {
+    let of_levels = history.levels.iter().flat_map(|level| {
         let counts = [level.iterations, level.operator_applications, level.preconditioner_applications];
         [level.grid.nx(), level.grid.ny()].into_iter().chain(counts).map(|n| n as f64)
     });
-    head.into_iter().chain([number]).chain(of_coarser).chain([levels.len() as f64]).chain(of_levels).collect()
+    head.into_iter()
+        .chain([*tile_fraction])
+        .chain(of_coarser)
+        .chain([history.levels.len() as f64])
+        .chain(of_levels)
+        .collect()
 }
 
 fn packed<T: Packed>(values: &[T]) -> Vec<u8> {

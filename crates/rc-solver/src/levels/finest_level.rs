@@ -19,9 +19,9 @@ use crate::descent::rows::ElementValues;
 use crate::descent::run::{DescentObserver, Goal};
 use crate::descent::state::{Descent, Start};
 use crate::descent::sums::GapSums;
-use crate::levels::level::{SolvedLevel, add_work};
+use crate::levels::coarse_level::{SolvedLevel, add_work};
 use crate::levels::operator_error::{OperatorError, PressureScale};
-use crate::levels::setup::Setup;
+use crate::levels::tiles::TileLevels;
 use crate::tiles::element_heights::element_heights;
 use crate::tiles::exclusion::SmoothDisplacement;
 use crate::tiles::gap_operator::{GapOperator, GapTables, PreparedGap};
@@ -64,13 +64,13 @@ const EXCLUSION_MARGIN: f64 = 2.0;
 /// The gap in contact of the start is `contact_gap`. The second result is the scale on which the error of an operator
 /// depends.
 pub(super) fn solve_finest_level(
-    setup: &Setup<'_>,
+    levels: &TileLevels<'_>,
     grid: Grid,
     start: MeshStart,
     contact_gap: f64,
     observer: &dyn Observer,
 ) -> (SolvedLevel, PressureScale) {
-    let mut level = FinestLevel::new(setup, grid, start, contact_gap);
+    let mut level = FinestLevel::new(levels, grid, start, contact_gap);
     if observer.should_stop() {
         let evaluation = level.evaluate_whole_cell();
         return level.into_solved(evaluation);
@@ -83,7 +83,7 @@ pub(super) fn solve_finest_level(
         evaluation = level.evaluate_whole_cell();
         // In a later round without a step, the iteration has reached its goal. The rest is the error of the operator.
         let is_stuck = !reached || round > 0 && level.info.iterations == before;
-        if is_stuck || evaluation.outcome.certificate.meets(setup.params.bound) {
+        if is_stuck || evaluation.outcome.certificate.meets(levels.params.solve.bound) {
             break;
         }
     }
@@ -124,10 +124,10 @@ struct TablesForGaps {
 
 impl TablesForGaps {
     /// The operator for certificates if `certify`, otherwise the operator for descents.
-    fn choose<'t>(&'t self, setup: &'t Setup<'_>, certify: bool) -> (&'t PreparedGap, &'t GapTables) {
+    fn choose<'t>(&'t self, levels: &'t TileLevels<'_>, certify: bool) -> (&'t PreparedGap, &'t GapTables) {
         match &self.certificates {
-            Some(certified) if certify => (setup.certified(), certified),
-            _ => (setup.fresh, &self.descents),
+            Some(certified) if certify => (levels.certified(), certified),
+            _ => (levels.fresh(), &self.descents),
         }
     }
 }
@@ -142,7 +142,7 @@ fn maximum_displacement(mesh: &Mesh, heights: &[f64], gap: &[f64], offset: f64) 
 }
 
 struct FinestLevel<'s, 'a> {
-    setup: &'s Setup<'a>,
+    levels: &'s TileLevels<'a>,
     tables: OperatorTables,
     candidates: Candidates,
     /// The pressure of the last descent, or the start before the first descent.
@@ -151,40 +151,40 @@ struct FinestLevel<'s, 'a> {
 }
 
 impl<'s, 'a> FinestLevel<'s, 'a> {
-    fn new(setup: &'s Setup<'a>, grid: Grid, mut start: MeshStart, contact_gap: f64) -> Self {
+    fn new(levels: &'s TileLevels<'a>, grid: Grid, mut start: MeshStart, contact_gap: f64) -> Self {
         let (n_cell, layout) = (grid.len() as f64, start.elements.layout());
-        project_to_load(&setup.problem, n_cell, &layout, &mut start.pressure, None);
+        project_to_load(&levels.problem, n_cell, &layout, &mut start.pressure, None);
         let tables = OperatorTables {
-            quick: setup.quick.tables(grid),
-            preconditioner: setup.preconditioner.tables(grid),
+            quick: levels.data.kernels.quick().tables(grid),
+            preconditioner: levels.data.kernels.preconditioner().tables(grid),
             gaps: TablesForGaps {
-                descents: setup.fresh.tables(grid),
-                certificates: setup.better.map(|better| better.tables(grid)),
+                descents: levels.fresh().tables(grid),
+                certificates: levels.better().map(|better| better.tables(grid)),
             },
         };
-        let candidates = first_candidates(setup, &start, &tables.quick, contact_gap);
+        let candidates = first_candidates(levels, &start, &tables.quick, contact_gap);
         let info = LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 };
-        Self { setup, tables, candidates, current: start, info }
+        Self { levels, tables, candidates, current: start, info }
     }
 
     /// Improves the pressure on the elements near contact. Returns whether it reached the tolerance there.
     ///
     /// Fresh gaps come from the operator for certificates if `certify`. The first round uses the operator for descents.
     fn improve(self, evaluation: Evaluation, certify: bool, observer: &dyn Observer) -> (Self, bool) {
-        let Self { setup, mut tables, mut candidates, current, mut info } = self;
-        let tolerance = evaluation.error.goal(setup.params.bound, &setup.problem);
-        let near = NearContact::choose(&mut candidates, &current.elements, evaluation, setup);
-        let hierarchy = setup.hierarchy(&near.elements, setup.quick.reach());
-        let (prepared, fresh) = tables.gaps.choose(setup, certify);
-        let fresh_hierarchy = setup.hierarchy(&near.elements, prepared.reach());
+        let Self { levels, mut tables, mut candidates, current, mut info } = self;
+        let tolerance = evaluation.error.goal(levels.params.solve.bound, &levels.problem);
+        let near = NearContact::choose(&mut candidates, &current.elements, evaluation, levels);
+        let hierarchy = levels.hierarchy(&near.elements, levels.data.kernels.quick().reach());
+        let (prepared, fresh) = tables.gaps.choose(levels, certify);
+        let fresh_hierarchy = levels.hierarchy(&near.elements, prepared.reach());
         let operators = LevelOperators {
             corrections: Box::new(TileCorrections::new(hierarchy, &tables.quick, &mut tables.preconditioner)),
-            fresh: setup.operator(fresh_hierarchy, fresh, &current),
+            fresh: levels.operator(fresh_hierarchy, fresh, &current),
         };
         drop(current);
         let start = Start::Known { pressure: near.pressure, gap: near.gap };
-        let mut descent = Descent::new(&near.heights, info.grid, operators, &setup.problem, start);
-        let max_iterations = setup.params.max_iterations;
+        let mut descent = Descent::new(&near.heights, info.grid, operators, &levels.problem, start);
+        let max_iterations = levels.params.solve.max_iterations;
         let goal = |factor: f64| Goal { tolerance: factor * tolerance, max_iterations, certify: None };
         let observer = DescentObserver { observer, mesh: &near.elements };
         let first = descent.run(goal(FIRST_TOLERANCE), &observer);
@@ -193,7 +193,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
             first
         } else {
             // Without a step, the gap is as fresh as before, and comes from a better operator.
-            if descent.info().iterations > 0 || setup.better.is_none() {
+            if descent.info().iterations > 0 || levels.better().is_none() {
                 descent.refresh();
             }
             descent.run(goal(LAST_TOLERANCE), &observer)
@@ -201,41 +201,41 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let reached = last.converged && !observer.observer.should_stop();
         add_work(&mut info, &descent.info());
         let pressure = descent.into_pressure();
-        candidates.heights = candidate_heights(setup, &candidates.elements, Some((&near.elements, &near.heights)));
+        candidates.heights = candidate_heights(levels, &candidates.elements, Some((&near.elements, &near.heights)));
         let current = MeshStart { elements: near.elements, pressure };
-        (Self { setup, tables, candidates, current, info }, reached)
+        (Self { levels, tables, candidates, current, info }, reached)
     }
 
     /// The gap on all candidates, and the operator that computed it.
     ///
     /// The operator is the one for certificates if `certify`, otherwise the one for descents.
     fn evaluate(&self, certify: bool) -> (Evaluation, Box<dyn GapOperator + '_>) {
-        let Self { setup, tables, candidates: Candidates { elements, heights }, current, info } = self;
-        let (prepared, tables) = tables.gaps.choose(setup, certify);
+        let Self { levels, tables, candidates: Candidates { elements, heights }, current, info } = self;
+        let (prepared, tables) = tables.gaps.choose(levels, certify);
         let mut pressure = current.elements.moved(elements, &current.pressure, 0.0);
         let mut gap = vec![0.0; pressure.len()];
         let (n_cell, layout) = (info.grid.len() as f64, elements.layout());
-        if has_drifted(setup.problem.bounds, n_cell, &layout, &pressure) {
-            project_to_load(&setup.problem, n_cell, &layout, &mut pressure, None);
+        if has_drifted(levels.problem.bounds, n_cell, &layout, &pressure) {
+            project_to_load(&levels.problem, n_cell, &layout, &mut pressure, None);
         }
-        let hierarchy = setup.hierarchy(elements, prepared.reach());
-        let mut operator = setup.operator(hierarchy, tables, current);
-        let empty = GapSums::empty(f64::INFINITY, setup.problem.bounds.hardness);
+        let hierarchy = levels.hierarchy(elements, prepared.reach());
+        let mut operator = levels.operator(hierarchy, tables, current);
+        let empty = GapSums::empty(f64::INFINITY, levels.problem.bounds.hardness);
         let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
-        let mut sums = fresh_gap(&mut *operator, &setup.problem, values, empty);
-        let scaling = sums.scale_to_penetration(&setup.problem);
+        let mut sums = fresh_gap(&mut *operator, &levels.problem, values, empty);
+        let scaling = sums.scale_to_penetration(&levels.problem);
         if let Some(scale) = scaling {
             let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
-            sums = rescale(scale, &elements.layout(), &setup.problem, values, empty);
+            sums = rescale(scale, &elements.layout(), &levels.problem, values, empty);
         }
-        let mut outcome = Outcome::new(&setup.problem, &sums, info.grid.len() as f64, true);
-        let size = maximum_displacement(elements, heights, &gap, setup.problem.offset());
-        let n_levels = setup.n_levels(info.grid);
+        let mut outcome = Outcome::new(&levels.problem, &sums, info.grid.len() as f64, true);
+        let size = maximum_displacement(elements, heights, &gap, levels.problem.offset());
+        let n_levels = levels.n_levels(info.grid);
         let scale = PressureScale::new((elements, &pressure), n_levels, size, outcome.energy_length());
         // Descents leave room for the error of the certifying operator.
-        let error = OperatorError::of(setup.certified().split(), &scale, setup.problem.bounds.control);
+        let error = OperatorError::of(levels.certified().split(), &scale, levels.problem.bounds.control);
         outcome.iteration_error = outcome.certificate.energy;
-        outcome.certificate = error.added_to(outcome.certificate, setup.problem.h_range);
+        outcome.certificate = error.added_to(outcome.certificate, levels.problem.h_range);
         (Evaluation { pressure, gap, outcome, scale, error, scaling: scaling.unwrap_or(1.0) }, operator)
     }
 
@@ -255,7 +255,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
                 return evaluation;
             }
             drop(operator);
-            self.candidates = Candidates::new(self.setup, more);
+            self.candidates = Candidates::new(self.levels, more);
         }
     }
 
@@ -264,7 +264,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     /// Elements are divided where they are too coarse. Tiles of the coarsest level are added wherever contact is
     /// possible.
     fn with_more_candidates(&self, evaluation: &Evaluation, operator: &dyn GapOperator) -> Mesh {
-        let (setup, elements) = (self.setup, &self.candidates.elements);
+        let (levels, elements) = (self.levels, &self.candidates.elements);
         let Evaluation { pressure, gap, outcome, error, scaling, .. } = evaluation;
         let mut values = operator.base_displacement();
         for v in &mut values {
@@ -272,16 +272,16 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         }
         let smooth = SmoothDisplacement {
             values: &values,
-            curvature: setup.certified().remainder_curvature() * elements.layout().maximum(pressure, 0.0),
+            curvature: levels.certified().remainder_curvature() * elements.layout().maximum(pressure, 0.0),
             error: EXCLUSION_MARGIN * error.displacement,
         };
-        let places = setup.possible_contact(&smooth, elements.coarsest().extent(), outcome.contact_gap);
+        let places = levels.possible_contact(&smooth, elements.coarsest().extent(), outcome.contact_gap);
         if elements.levels().len() == 1 {
-            return Mesh::new(elements.with(&places), setup.ranks);
+            return Mesh::new(elements.with(&places), levels.ranks());
         }
         let elements = elements.elements();
         let fields = ContactFields { elements, pressure, beyond: 0.0, gap, contact_gap: outcome.contact_gap };
-        setup.refined(&fields, false).with(&places).into()
+        levels.refined(&fields, false).with(&places).into()
     }
 
     fn into_solved(self, evaluation: Evaluation) -> (SolvedLevel, PressureScale) {
@@ -293,35 +293,36 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
 }
 
 impl Candidates {
-    fn new(setup: &Setup<'_>, elements: Mesh) -> Self {
-        Self { heights: candidate_heights(setup, &elements, None), elements }
+    fn new(levels: &TileLevels<'_>, elements: Mesh) -> Self {
+        Self { heights: candidate_heights(levels, &elements, None), elements }
     }
 }
 
 /// The heights of `elements`, of which some may be `known`.
-fn candidate_heights(setup: &Setup<'_>, elements: &Mesh, known: Option<(&Mesh, &[f64])>) -> Vec<f64> {
-    element_heights(setup.heights, elements, known, out_of_reach(setup, elements))
+fn candidate_heights(levels: &TileLevels<'_>, elements: &Mesh, known: Option<(&Mesh, &[f64])>) -> Vec<f64> {
+    element_heights(&levels.data.heights, elements, known, out_of_reach(levels, elements))
 }
 
 /// The height of values that stand for no element.
-fn out_of_reach(setup: &Setup<'_>, elements: &Mesh) -> f64 {
-    setup.problem.out_of_reach(elements.finest().sides().into_iter().product())
+fn out_of_reach(levels: &TileLevels<'_>, elements: &Mesh) -> f64 {
+    levels.problem.out_of_reach(elements.finest().sides().into_iter().product())
 }
 
 /// Elements where the start may touch according to the quick operator.
-fn first_candidates(setup: &Setup<'_>, start: &MeshStart, tables: &Tables<f32>, contact_gap: f64) -> Candidates {
+fn first_candidates(levels: &TileLevels<'_>, start: &MeshStart, tables: &Tables<f32>, contact_gap: f64) -> Candidates {
     let MeshStart { elements, pressure } = start;
-    let mut quick = setup.quick_operator(setup.hierarchy(elements, setup.quick.reach()), tables, start);
+    let mut quick =
+        levels.quick_operator(levels.hierarchy(elements, levels.data.kernels.quick().reach()), tables, start);
     write_blocks(&mut quick, pressure.chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
     quick.apply();
     // Contact is not nearer than the first touch, even if coarser heights reach beyond the highest point.
-    let first_touch = setup.problem.offset() - setup.problem.h_max;
+    let first_touch = levels.problem.offset() - levels.problem.h_max;
     // This is not a proof yet. The margin also stands for the quick operator's error.
-    let gap = contact_gap.max(first_touch) + CANDIDATE_MARGIN * setup.penetration(contact_gap).abs();
-    let curvature = setup.quick.remainder_curvature() * elements.layout().maximum(pressure, 0.0);
+    let gap = contact_gap.max(first_touch) + CANDIDATE_MARGIN * levels.penetration(contact_gap).abs();
+    let curvature = levels.data.kernels.quick().remainder_curvature() * elements.layout().maximum(pressure, 0.0);
     let smooth = SmoothDisplacement { values: &quick.base_displacement(), curvature, error: 0.0 };
-    let places = setup.possible_contact(&smooth, elements.coarsest().extent(), gap);
-    Candidates::new(setup, Mesh::new(elements.with(&places), setup.ranks))
+    let places = levels.possible_contact(&smooth, elements.coarsest().extent(), gap);
+    Candidates::new(levels, Mesh::new(elements.with(&places), levels.ranks()))
 }
 
 /// The candidates that a descent works on.
@@ -338,14 +339,14 @@ impl NearContact {
     /// Chooses the candidates near contact. `before` are the elements of the last descent.
     ///
     /// The candidates lose their heights, because descents need the memory.
-    fn choose(candidates: &mut Candidates, before: &Mesh, evaluation: Evaluation, setup: &Setup<'_>) -> Self {
+    fn choose(candidates: &mut Candidates, before: &Mesh, evaluation: Evaluation, levels: &TileLevels<'_>) -> Self {
         let Evaluation { pressure, gap, outcome, .. } = evaluation;
         // Elements that are nearer to contact than the error may still come into contact.
         let error = match outcome.mean_pressure {
             // If coarser levels have lost a contact that they hardly resolve, there is no pressure. The contact begins
             // anew.
-            0.0 => CANDIDATE_MARGIN * (setup.problem.h_max - setup.problem.h_mean),
-            _ => outcome.certificate.penetration * setup.problem.h_range,
+            0.0 => CANDIDATE_MARGIN * (levels.problem.h_max - levels.problem.h_mean),
+            _ => outcome.certificate.penetration * levels.problem.h_range,
         };
         let near = outcome.contact_gap + error;
         let is_near = |sides: [usize; 2], place: [u32; 2], mut cells: Range<usize>| {
@@ -353,10 +354,10 @@ impl NearContact {
         };
         let elements = candidates.elements.chosen(is_near);
         // The vectors are moved one after the other. Nothing presses on values that fill up a level.
-        let lowest = out_of_reach(setup, &elements);
+        let lowest = out_of_reach(levels, &elements);
         let chosen = |values: Vec<f64>, elsewhere: f64| candidates.elements.moved(&elements, &values, elsewhere);
         let heights = chosen(std::mem::take(&mut candidates.heights), lowest);
-        let (gap, pressure) = (chosen(gap, setup.problem.offset() - lowest), chosen(pressure, 0.0));
+        let (gap, pressure) = (chosen(gap, levels.problem.offset() - lowest), chosen(pressure, 0.0));
         Self { elements, heights, pressure, gap }
     }
 }

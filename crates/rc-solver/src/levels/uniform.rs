@@ -6,7 +6,8 @@ use rc_core::{Boundary, Field, Kernel, Observer};
 
 use crate::descent::info::GridSolution;
 use crate::grid::full_contact;
-use crate::levels::nested_grids::{FinestGrid, NestedGrids, coarser_heights};
+use crate::levels::grids::{GridLevels, coarser_heights};
+use crate::levels::nested::Nested;
 use crate::problem::bounds::Bounds;
 use crate::problem::checked::Problem;
 use crate::problem::error::ProblemError;
@@ -51,7 +52,8 @@ pub(crate) fn solve_uniform(
     {
         return Ok(solution);
     }
-    let levels = NestedGrids { kernel, problem: &problem, params: *params, n_above: 0, observer };
-    let FinestGrid { descent, outcome, levels, coarser } = levels.solve_from(&coarser, heights);
-    Ok(descent.into_solution(&outcome, levels, coarser))
+    let grids = GridLevels::new(kernel, &problem, (heights, &coarser), 0);
+    let nested = Nested { problem: &problem, params: *params, n_levels: grids.n_levels(), observer };
+    let ((descent, outcome), history) = grids.solve_all(&nested);
+    Ok(descent.into_solution(&outcome, history.levels, history.coarser))
 }

@@ -49,7 +49,8 @@ impl Observables {
         let area = ContactArea::of_hard(fields, hardness, bias, boundary);
         let plastic = hardness.is_finite().then(|| PlasticEdges::of(fields, hardness, bias, boundary));
         let pressure = &solution.pressure;
-        Self::new(&solution.info, (area, plastic), parallel::rms(pressure), parallel::maximum(pressure.values(), 0.0))
+        let rms = parallel::rms(pressure.values(), pressure.grid().nx());
+        Self::new(&solution.info, (area, plastic), rms, parallel::maximum(pressure.values(), 0.0))
     }
 
     /// Observables from the contact area and the pressures of the elements.

@@ -7,9 +7,9 @@ use std::sync::Arc;
 use rc_core::{Boundary, Grid, HeightField, HeightSource};
 
 use crate::grid::response::padded_side;
-use crate::levels::adaptive::AdaptiveProblem;
 use crate::levels::estimate::Estimate;
 use crate::levels::split::check_split;
+use crate::levels::tiles::TileLevels;
 use crate::problem::adaptive_error::AdaptiveError;
 use crate::problem::capabilities::{Feature, Refusal};
 use crate::problem::checked::{check_load, check_tolerance};
@@ -108,11 +108,11 @@ impl<'a> Choice<'a, '_> {
     }
 
     /// Prepares the adaptive method, if it fits the problem and the memory.
-    fn prepare(&self) -> Result<AdaptiveProblem<'a>, AdaptiveError> {
+    fn prepare(&self) -> Result<TileLevels<'a>, AdaptiveError> {
         let (params, kernel) = (self.params.adaptive(self.bound), self.problem.kernel.get());
         let split = kernel.split().expect("the table refuses kernels without a split");
-        let ground = self.shared.ground(&self.problem.heights, kernel, split, &params)?;
-        AdaptiveProblem::on(ground, self.problem.bounds(), &params, &self.problem.place)
+        let data = self.shared.tiles(&self.problem.heights, kernel, split, &params)?;
+        TileLevels::new(data, self.problem.kernel.clone(), self.problem.bounds(), &params, &self.problem.place)
     }
 
     /// Chooses the uniform grid after the adaptive method has failed with `error`.

@@ -7,8 +7,7 @@ use rc_kernel::PeriodicLove;
 
 use crate::descent::info::{GridSolution, Status};
 use crate::grid::solved::{GridSolved, Response};
-use crate::levels::adaptive::{AdaptiveProblem, Unsuitable};
-use crate::levels::solved::TilesSolved;
+use crate::levels::tiles::{TileLevels, Unsuitable};
 use crate::levels::uniform::solve_uniform;
 use crate::paper::error::GaussSeidelError;
 use crate::paper::half_space::HalfSpace;
@@ -18,14 +17,14 @@ use crate::problem::contact_problem::ContactProblem;
 use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
 use crate::problem::tolerance::ErrorBound;
-use crate::solution::whole::HowSolved;
-use crate::solution::whole::Solution;
+use crate::solution::solved::Solved;
+use crate::solution::whole::{HowSolved, Solution};
 use crate::solve::error::SolveError;
 use crate::solve::features::check_ranks;
 use crate::solve::memory::{bytes_per_element, check_uniform};
 use crate::solve::params::SolveParams;
 use crate::solve::shared::Shared;
-use crate::tiles::solution::AdaptiveSolution;
+use crate::tiles::solution::TileSolution;
 
 /// A checked contact problem with its method. It is not solved yet.
 pub struct Plan<'a> {
@@ -41,7 +40,7 @@ pub struct Plan<'a> {
 /// A method, and its data at the start.
 pub(crate) enum ChosenMethod<'a> {
     /// The adaptive method. Heights are evaluated as they are needed.
-    Adaptive(Box<AdaptiveProblem<'a>>),
+    Adaptive(Box<TileLevels<'a>>),
     /// The uniform method. All heights will be evaluated.
     Uniform,
     /// The paper's procedure. All heights will be evaluated.
@@ -86,10 +85,10 @@ impl<'a> Plan<'a> {
         let name = problem.kernel.get().name();
         let how = |method, reason| HowSolved::new(method, reason, bound, name).with_hardness(problem.hardness);
         let (before, chosen, reason) = match chosen {
-            ChosenMethod::Adaptive(adaptive) => {
-                let tried = by_adaptive(&problem, &params, (&adaptive, &reason), observer)?;
-                let (how, h_max) = (how(Method::Adaptive, reason), adaptive.h_max());
-                let found = |solution| Solution::new(how, h_max, Box::new(TilesSolved { solution, problem: adaptive }));
+            ChosenMethod::Adaptive(levels) => {
+                let tried = by_adaptive(&problem, &params, (&levels, &reason), observer)?;
+                let how = how(Method::Adaptive, reason);
+                let found = |solution: TileSolution<'a>| Solution::new(how, solution.h_max, Box::new(solution));
                 match tried {
                     Tried::Solved(solution) => return converged(found(solution)),
                     Tried::Left(reason) => {
@@ -102,7 +101,7 @@ impl<'a> Plan<'a> {
             on_grid => (None, on_grid, reason),
         };
         if let Some(shared) = Arc::get_mut(&mut shared) {
-            shared.forget_ground();
+            shared.forget_tiles();
         }
         let (heights, kernel) = (shared.heights(&problem.heights), problem.kernel.get());
         let (method, solution) = if matches!(chosen, ChosenMethod::GaussSeidel) {
@@ -128,13 +127,13 @@ impl<'a> Plan<'a> {
 }
 
 /// What the adaptive method did, and why the uniform method takes over.
-enum Tried {
+enum Tried<'a> {
     /// The solution is the result.
-    Solved(AdaptiveSolution),
+    Solved(TileSolution<'a>),
     /// The uniform method is better.
     Left(MethodReason),
     /// The uniform method may certify what this solution does not.
-    NotCertified(AdaptiveSolution, MethodReason),
+    NotCertified(TileSolution<'a>, MethodReason),
 }
 
 /// Solves by the adaptive method, unless the uniform method is better.
@@ -142,33 +141,31 @@ enum Tried {
 /// Only a method that an estimate chose is replaced. There are three reasons: contact turns out to be too scattered,
 /// the adaptive operator cannot certify the tolerance of such pressures, or it did not. The uniform grid must then fit
 /// into memory.
-fn by_adaptive(
-    problem: &ContactProblem<'_>,
+fn by_adaptive<'a>(
+    problem: &ContactProblem<'a>,
     params: &SolveParams,
-    (adaptive, reason): (&AdaptiveProblem<'_>, &MethodReason),
+    (levels, reason): (&TileLevels<'a>, &MethodReason),
     observer: &dyn Observer,
-) -> Result<Tried, SolveError> {
-    let (bytes, kernel) = (bytes_per_element(problem.boundary()), problem.kernel.get());
+) -> Result<Tried<'a>, SolveError> {
+    let bytes = bytes_per_element(problem.boundary());
     let uniform_fits = check_uniform(problem.heights.grid(), bytes, params.memory_limit, Method::Uniform);
-    let may_change = matches!(reason, MethodReason::SmallContact { .. });
     // If the method may not follow memory, a load is solved in the same way on every machine, or refused.
-    if !may_change || uniform_fits.is_err() && params.method_follows_memory {
-        return Ok(Tried::Solved(adaptive.solve(kernel, observer)));
-    }
-    let tolerance = adaptive.bound().value();
-    let tried = match adaptive.solve_if_suitable(kernel, observer) {
+    let may_leave =
+        matches!(reason, MethodReason::SmallContact { .. }) && (uniform_fits.is_ok() || !params.method_follows_memory);
+    let (bound, tolerance) = (levels.params.solve.bound, levels.params.solve.bound.value());
+    let tried = match levels.solve(may_leave, observer) {
         Err(Unsuitable::Scattered { tile_fraction }) => {
             Tried::Left(MethodReason::ScatteredContact { percent: 100.0 * tile_fraction })
         }
         Err(Unsuitable::Rough) => Tried::Left(MethodReason::ToleranceTooSmall { tolerance }),
-        Ok(solution) if solution.status() == Status::NotConverged => {
-            if observer.should_stop() || problem.place.is_shared() {
+        Ok(solution) => {
+            let is_certified = solution.status() != Status::NotConverged;
+            if !may_leave || is_certified || observer.should_stop() || problem.place.is_shared() {
                 return Ok(Tried::Solved(solution));
             }
-            let error = solution.info.certificate.error(adaptive.bound());
+            let error = solution.info.certificate.error(bound);
             Tried::NotCertified(solution, MethodReason::NotCertified { error, tolerance })
         }
-        Ok(solution) => return Ok(Tried::Solved(solution)),
     };
     uniform_fits?;
     Ok(tried)

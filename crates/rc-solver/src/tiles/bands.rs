@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use rc_quadtree::{CELLS, TILE, put_tile};
 
-use crate::solution::rows::Receiver;
+use crate::solution::rows::{Halted, Receiver, TakeRows};
 use crate::tiles::mesh::Mesh;
 use crate::tiles::part::{pack_tile, unpack_tiles};
 
@@ -33,11 +33,11 @@ pub(crate) fn bands(mesh: &Mesh, receiver: Receiver) -> impl Iterator<Item = (Ra
 ///
 /// `take` gets the rows of cells of one row of tiles at a time, with the index of the first row. They are zero where
 /// there is no tile. `values` are those of this rank's tiles. All ranks call this together.
-pub(crate) fn hand_out<E>(
+pub(crate) fn hand_out(
     (mesh, values): (&Mesh, &[f64]),
     (band, to): (Range<usize>, usize),
-    take: &mut impl FnMut(usize, &[f64]) -> Result<(), E>,
-) -> Result<(), E> {
+    take: TakeRows<'_>,
+) -> Result<(), Halted> {
     let ([nx, ny], ranks) = (mesh.finest().sides(), mesh.ranks());
     let own = mesh.own_places().iter().zip(values.as_chunks::<CELLS>().0);
     let own = own.filter(|([_, row], _)| band.contains(&(*row as usize)));

@@ -3,6 +3,7 @@
 pub(crate) mod bands;
 pub(crate) mod base;
 pub(crate) mod contact_area;
+pub(crate) mod data;
 pub(crate) mod deal;
 pub(crate) mod element_blocks;
 pub(crate) mod element_heights;

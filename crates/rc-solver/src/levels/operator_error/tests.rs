@@ -15,12 +15,11 @@ use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet};
 use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
 use crate::grid::operators::SymbolOperator;
 use crate::grid::uniform_operator::UniformOperator;
-use crate::levels::adaptive::AdaptiveProblem;
-use crate::levels::ground::Ground;
-use crate::levels::nested_iteration::NestedSolution;
 use crate::levels::operator_error::*;
 use crate::levels::params::AdaptiveParams;
+use crate::levels::tiles::{Finest, TileLevels, prepare};
 use crate::problem::control::Control;
+use crate::problem::kernel::OwnedKernel;
 use crate::problem::params::IterationParams;
 use crate::problem::place::Place;
 use crate::tiles::base::Base;
@@ -170,7 +169,7 @@ struct Scene<'a> {
 struct Audited {
     base: Base,
     problem: Problem,
-    solved: NestedSolution,
+    solved: Finest,
     pressure: Vec<f64>,
     displacement: Vec<f64>,
 }
@@ -185,11 +184,11 @@ impl Scene<'_> {
             memory_limit: None,
         };
         let kernel: &dyn Kernel = if self.boundary == Boundary::Free { &FreeLove } else { &Love };
-        let ground = Ground::new(HeightSource::Map(self.map), kernel, &HalfSpace, &params).expect("heights");
-        let place = Place::default();
-        let problem = AdaptiveProblem::on(&Arc::new(ground), self.control.into(), &params, &place).expect("a problem");
-        let solver = problem.first_solver(kernel);
-        let solved = problem.solve_levels(&solver, solver.prepare(solver.begin(&Silent), &Silent), &Silent);
+        let data = prepare(HeightSource::Map(self.map), kernel, &HalfSpace, &params).expect("heights");
+        let (place, kernel_of) = (Place::default(), OwnedKernel::Borrowed(kernel));
+        let levels = TileLevels::new(&Arc::new(data), kernel_of, self.control.into(), &params, &place);
+        let levels = levels.expect("a problem");
+        let solved = levels.finish(levels.climb(levels.begin(&Silent), &Silent), &Silent);
         let grid = self.map.grid();
         let mut pressure = vec![0.0; grid.len()];
         for (p, place) in solved.level.pressure.iter().zip(places(&solved.level.elements)) {
@@ -200,19 +199,19 @@ impl Scene<'_> {
         }
         let mut displacement = vec![0.0; grid.len()];
         UniformOperator::new(grid, kernel).apply(&pressure, &mut displacement, &mut []);
-        Audited { base: problem.ground.kernels.base(), problem: problem.problem, solved, pressure, displacement }
+        Audited { base: levels.base(), problem: levels.problem, solved, pressure, displacement }
     }
 }
 
 impl Audited {
     fn error(&self) -> OperatorError {
-        OperatorError::of(self.solved.splits.certified, &self.solved.scale, self.problem.bounds.control)
+        OperatorError::of(self.solved.certified, &self.solved.scale, self.problem.bounds.control)
     }
 
     /// Gives `look` the certifying operator, after an application to the pressure, and its displacement.
     fn certified<R>(&self, base: Base, look: impl FnOnce(&dyn GapOperator, &[f64]) -> R) -> R {
         let level = &self.solved.level;
-        let prepared = PreparedGap::new(self.solved.splits.certified, base, 0);
+        let prepared = PreparedGap::new(self.solved.certified, base, 0);
         let hierarchy = Arc::new(Hierarchy::new(base, level.elements.clone(), prepared.reach()));
         let tables = prepared.tables(self.solved.grid);
         let mut operator = tables.operator(hierarchy, level.outcome.mean_pressure, self.problem.h_range);
@@ -357,7 +356,7 @@ fn audit(name: &str, scene: &Scene<'_>, audited: &Audited) -> String {
         let errors = both.filter_map(|(v, place)| Some((v - audited.displacement[place?]).abs()));
         errors.fold(0.0, f64::max)
     });
-    let split = audited.solved.splits.certified.error;
+    let split = audited.solved.certified.error;
     assert!(worst < bound, "{name}: {worst:e} for {bound:e}");
     let iterations = audited.solved.level.info.iterations;
     format!("e1 = {split:e}, {name}: displacements off by {:.2} of their bound, {iterations} iterations", worst / bound)

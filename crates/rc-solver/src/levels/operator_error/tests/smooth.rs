@@ -16,7 +16,7 @@ fn the_smooth_displacement_is_as_exact_as_the_others() {
             .filter(|&i| audited.pressure[i] > 0.0)
             .map(|i| (DVec2::new((i % side) as f64 + 0.5, (i / side) as f64 + 0.5) / side as f64, audited.pressure[i]))
             .collect();
-        let reach = 0.5 * audited.solved.splits.certified.params.cutoff as f64 / base.nx() as f64;
+        let reach = 0.5 * audited.solved.certified.params.cutoff as f64 / base.nx() as f64;
         let bound = audited.error().displacement;
         let smooth = audited.certified(audited.base, |operator, _| operator.base_displacement());
         let mut far = 0;

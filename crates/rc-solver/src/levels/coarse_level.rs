@@ -10,7 +10,7 @@ use crate::descent::operators::LevelOperators;
 use crate::descent::outcome::Outcome;
 use crate::descent::run::{DescentObserver, Goal};
 use crate::descent::state::{Descent, Start};
-use crate::levels::setup::Setup;
+use crate::levels::tiles::TileLevels;
 use crate::tiles::element_heights::element_heights;
 use crate::tiles::mesh::Mesh;
 use crate::tiles::operator::corrections::TileCorrections;
@@ -53,23 +53,23 @@ pub(crate) fn add_work(info: &mut LevelInfo, more: &LevelInfo) {
 
 /// Solves only on the elements of the prolonged pressure.
 pub(crate) fn solve_coarse_level(
-    setup: &Setup<'_>,
+    levels: &TileLevels<'_>,
     grid: Grid,
     start: MeshStart,
-    tolerance: f64,
+    goal: Goal,
     observer: &dyn Observer,
 ) -> SolvedLevel {
-    let hierarchy = setup.hierarchy(&start.elements, setup.quick.reach());
-    let response = setup.quick.tables(grid);
-    let mut preconditioner = setup.preconditioner.tables(grid);
+    let kernels = &levels.data.kernels;
+    let hierarchy = levels.hierarchy(&start.elements, kernels.quick().reach());
+    let response = kernels.quick().tables(grid);
+    let mut preconditioner = kernels.preconditioner().tables(grid);
     let operators = LevelOperators {
         corrections: Box::new(TileCorrections::new(Arc::clone(&hierarchy), &response, &mut preconditioner)),
-        fresh: Box::new(setup.quick_operator(hierarchy, &response, &start)),
+        fresh: Box::new(levels.quick_operator(hierarchy, &response, &start)),
     };
     let MeshStart { elements, pressure } = start;
-    let heights = element_heights(setup.heights, &elements, None, setup.problem.out_of_reach(grid.len()));
-    let mut descent = Descent::new(&heights, grid, operators, &setup.problem, Start::Pressure(pressure));
-    let goal = Goal { tolerance, max_iterations: setup.params.max_iterations, certify: None };
+    let heights = element_heights(&levels.data.heights, &elements, None, levels.problem.out_of_reach(grid.len()));
+    let mut descent = Descent::new(&heights, grid, operators, &levels.problem, Start::Pressure(pressure));
     let outcome = descent.run(goal, &DescentObserver { observer, mesh: &elements });
     let info = descent.info();
     let (pressure, gap) = descent.into_vectors(0.0);

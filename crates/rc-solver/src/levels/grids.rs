@@ -1,0 +1,103 @@
+//! Levels that are whole grids.
+
+use rc_core::{Boundary, Field, Grid, Kernel, Observer};
+
+use crate::descent::info::{LevelInfo, LevelValues};
+use crate::descent::outcome::Outcome;
+use crate::descent::run::{DescentObserver, Goal};
+use crate::descent::state::{Descent, Start};
+use crate::grid::coarser::{Pits, about_halved, coarsen};
+use crate::grid::operators::{certifying_operators, uniform_operators};
+use crate::grid::prolongation::prolong;
+use crate::levels::nested::{Begun, History, Levels, Nested};
+use crate::parallel::rms;
+use crate::problem::checked::Problem;
+
+/// Minimum number of elements per side of the coarsest grid.
+///
+/// A smaller grid costs nothing, so coarser ones do not prepare it.
+const SMALLEST_SIDE: usize = 64;
+
+/// Number of pressures that are summed at once.
+const PIECE: usize = 4096;
+
+/// The heights on the coarser of nested grids, finest first.
+pub(super) fn coarser_heights(heights: &Field, boundary: Boundary) -> Vec<Field> {
+    coarsen(heights, boundary, Pits::Filled, about_halved(heights.grid(), SMALLEST_SIDE))
+}
+
+/// Nested grids.
+pub(crate) struct GridLevels<'a> {
+    kernel: &'a dyn Kernel,
+    problem: &'a Problem,
+    /// Heights on the grids, finest first.
+    heights: Vec<&'a Field>,
+    /// Number of levels above the last grid.
+    n_above: usize,
+}
+
+impl<'a> GridLevels<'a> {
+    /// The grid of `heights` with `n_above` levels above it, and the `coarser` grids, finest first.
+    pub(crate) fn new(
+        kernel: &'a dyn Kernel,
+        problem: &'a Problem,
+        (heights, coarser): (&'a Field, &'a [Field]),
+        n_above: usize,
+    ) -> Self {
+        Self { kernel, problem, heights: std::iter::once(heights).chain(coarser).collect(), n_above }
+    }
+
+    /// Number of levels, including those above the last grid.
+    pub(crate) fn n_levels(&self) -> usize {
+        self.n_above + self.heights.len()
+    }
+
+    /// Solves all grids, coarsest first.
+    pub(crate) fn solve_all(&self, nested: &Nested<'_>) -> ((Descent<'a>, Outcome), History) {
+        let begun = Begun { above: self.n_levels() - 1, start: Start::Nothing, history: History::default() };
+        nested.solve(self, nested.climb(self, begun, self.n_above))
+    }
+}
+
+impl<'a> Levels for GridLevels<'a> {
+    type Start = Start;
+    type Solved = (Descent<'a>, Outcome);
+
+    /// Levels between would only improve the start.
+    const SKIPS: bool = true;
+
+    fn grid(&self, above: usize) -> Grid {
+        self.heights[above - self.n_above].grid()
+    }
+
+    fn solve_level(&self, above: usize, start: Start, goal: Goal, observer: &dyn Observer) -> Self::Solved {
+        let (heights, grid) = (self.heights[above - self.n_above].values(), self.grid(above));
+        let watch = DescentObserver { observer, mesh: &grid };
+        if above == 0 && !matches!(start, Start::Nothing) && observer.should_stop() {
+            let operators = certifying_operators(grid, self.kernel);
+            let mut descent = Descent::without_steps(heights, grid, operators, self.problem, start);
+            let outcome = descent.certify_start(goal, &watch);
+            return (descent, outcome);
+        }
+        let mut descent = Descent::new(heights, grid, uniform_operators(grid, self.kernel), self.problem, start);
+        let outcome = descent.run(goal, &watch);
+        (descent, outcome)
+    }
+
+    fn info(&self, (descent, _): &Self::Solved) -> LevelInfo {
+        descent.info()
+    }
+
+    fn values(&self, (descent, outcome): &Self::Solved, above: usize) -> Option<LevelValues> {
+        let sides = |grid: Grid| [grid.nx(), grid.ny()];
+        let is_half = || sides(self.grid(above)).map(|side| 2 * side) == sides(self.grid(above - 1));
+        (above == self.n_above || is_half()).then(|| LevelValues {
+            rms_pressure: rms(descent.pressure(), PIECE),
+            penetration: self.problem.h_max + outcome.approach,
+        })
+    }
+
+    fn start(&self, (descent, _): Self::Solved, above: usize) -> Start {
+        Start::Pressure(prolong(&descent, self.grid(above)))
+    }
+}
