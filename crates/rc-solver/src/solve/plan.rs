@@ -162,7 +162,7 @@ fn by_adaptive(
         }
         Err(Unsuitable::Rough) => Tried::Left(MethodReason::ToleranceTooSmall { tolerance }),
         Ok(solution) if solution.status() == Status::NotConverged => {
-            if observer.should_stop() || problem.place.is_shared() {
+            if observer.should_stop() || problem.place.is_shared() || uniform_fits.is_err() {
                 return Ok(Tried::Solved(solution));
             }
             let error = solution.info.certificate.error(adaptive.bound());
