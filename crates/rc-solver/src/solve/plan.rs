@@ -166,7 +166,13 @@ fn by_adaptive(
                 return Ok(Tried::Solved(solution));
             }
             let error = solution.info.certificate.error(adaptive.bound());
-            Tried::NotCertified(solution, MethodReason::NotCertified { error, tolerance })
+            let reason = MethodReason::NotCertified { error, tolerance };
+            // The solution is kept meanwhile, with its problem, if there is memory for both.
+            let rest = params.memory_limit.map(|limit| limit.saturating_sub(adaptive.estimate().adaptive_bytes as u64));
+            match check_uniform(problem.heights.grid(), bytes, rest, Method::Uniform) {
+                Ok(()) => Tried::NotCertified(solution, reason),
+                Err(_) => Tried::Left(reason),
+            }
         }
         Ok(solution) => return Ok(Tried::Solved(solution)),
     };
