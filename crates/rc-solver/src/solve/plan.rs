@@ -116,7 +116,8 @@ impl<'a> Plan<'a> {
         let h_max = heights.max();
         let solved = GridSolved { solution, response: Response::Kernel(problem.kernel), hardness: problem.hardness };
         let solution = Solution::new(how, h_max, Box::new(solved));
-        let error = |solution: &Solution<'_>| solution.certificate().error(bound);
+        // NaN counts as infinite.
+        let error = |solution: &Solution<'_>| solution.certificate().error(bound).min(f64::INFINITY);
         match before {
             // The uniform method did not end either, perhaps because the observer ended it.
             Some(before) if solution.status() == Status::NotConverged && error(&before) < error(&solution) => {
