@@ -56,7 +56,7 @@ impl Solution<'_> {
     #[must_use]
     pub fn displacement(&self) -> &Field {
         self.displacement.get_or_init(|| {
-            self.collect(self.grid(), |take| hand_out(take, |take| self.solved.displacement_rows(take)))
+            self.collect(self.grid(), |take| hand_out(&self.ranks(), take, |take| self.solved.displacement_rows(take)))
         })
     }
 
@@ -70,7 +70,7 @@ impl Solution<'_> {
     pub fn pressure_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match self.pressure.get() {
             Some(pressure) => take(0, pressure.values()),
-            None => hand_out(take, |take| self.solved.pressure_rows(Receiver::First, take)),
+            None => hand_out(&self.ranks(), take, |take| self.solved.pressure_rows(Receiver::First, take)),
         }
     }
 
@@ -81,7 +81,7 @@ impl Solution<'_> {
     /// # Errors
     /// The error that `take` returns.
     pub fn own_pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        hand_out(take, |take| self.solved.pressure_rows(Receiver::Each, take))
+        hand_out(&self.ranks(), take, |take| self.solved.pressure_rows(Receiver::Each, take))
     }
 
     /// Passes the rows of [`Solution::gap`] to `take`, as [`Solution::pressure_rows`] does.
@@ -142,6 +142,6 @@ impl Solution<'_> {
         rows: Rows,
         take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        hand_out(take, |take| self.solved.gap_rows(part, rows, take))
+        hand_out(&self.ranks(), take, |take| self.solved.gap_rows(part, rows, take))
     }
 }
