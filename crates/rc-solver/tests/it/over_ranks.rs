@@ -46,3 +46,15 @@ fn a_rank_that_takes_no_more_does_not_hold_up_the_others() {
     assert!(found[0] == ([Err(1), Err(2)], 2, expected), "{:?}", (found[0].0, found[0].1));
     assert!(found[1] == ([Ok(()); 2], 0, Vec::new()), "{:?}", (found[1].0, found[1].1));
 }
+
+#[test]
+fn the_first_rank_gets_the_rows_of_a_kept_field_too() {
+    let heights = wave();
+    let of_rank = |ranks: Ranks| {
+        let solution = solve(&heights, ranks);
+        let kept = solution.pressure().values().to_vec();
+        (kept, rows(&solution))
+    };
+    let found = run_threads(2, of_rank).expect("all ranks end");
+    assert!(found[0].0 == found[0].1 && found[1].0 == found[0].0 && found[1].1.is_empty());
+}
