@@ -42,8 +42,8 @@ impl Check<'_> {
     fn deviation(&self, (kx, ky): (usize, usize)) -> Result<f64, ProblemError> {
         let q = TAU * self.grid.waves(kx, ky);
         let (deviation, curvature) = (self.split.deviation(q), self.split.curvature());
-        // A wave in the transform of a function is at most the integral of the function's magnitude.
-        let of_wave = q * q * deviation.abs();
+        // The pressure (1 + cos q x)/2 has this second derivative.
+        let of_wave = 0.5 * q * q * deviation.abs();
         let is_bounded = of_wave <= curvature;
         if !is_bounded {
             return Err(self.fault("curvature", (kx, ky), curvature, (of_wave, " or more")));
