@@ -91,7 +91,11 @@ impl<'a> Plan<'a> {
                 let (how, h_max) = (how(Method::Adaptive, reason), adaptive.h_max());
                 let found = |solution| Solution::new(how, h_max, Box::new(TilesSolved { solution, problem: adaptive }));
                 match tried {
-                    Tried::Solved(solution) => return converged(found(solution)),
+                    Tried::Solved(solution) => {
+                        // An error carries a solution without a borrow, which need not be a copy then.
+                        drop(shared);
+                        return converged(found(solution));
+                    }
                     Tried::Left(reason) => {
                         check_ranks(&problem, &reason)?;
                         (None, ChosenMethod::Uniform, reason)
