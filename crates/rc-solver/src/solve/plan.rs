@@ -96,10 +96,7 @@ impl<'a> Plan<'a> {
                         drop(shared);
                         return converged(found(solution));
                     }
-                    Tried::Left(reason) => {
-                        check_ranks(&problem, &reason)?;
-                        (None, ChosenMethod::Uniform, reason)
-                    }
+                    Tried::Left(reason) => (None, ChosenMethod::Uniform, reason),
                     Tried::NotCertified(solution, reason) => (Some(found(solution)), ChosenMethod::Uniform, reason),
                 }
             }
@@ -153,36 +150,41 @@ fn by_adaptive(
     (adaptive, reason): (&AdaptiveProblem<'_>, &MethodReason),
     observer: &dyn Observer,
 ) -> Result<Tried, SolveError> {
-    let (bytes, kernel) = (bytes_per_element(problem.boundary()), problem.kernel.get());
-    let uniform_fits = check_uniform(problem.heights.grid(), bytes, params.memory_limit, Method::Uniform);
+    let kernel = problem.kernel.get();
+    let fits_beside = |bytes: f64| {
+        let limit = params.memory_limit.map(|limit| limit.saturating_sub(bytes as u64));
+        check_uniform(problem.heights.grid(), bytes_per_element(problem.boundary()), limit, Method::Uniform)
+    };
+    let uniform_fits = fits_beside(0.0);
     let may_change = matches!(reason, MethodReason::SmallContact { .. });
     // If the method may not follow memory, a load is solved in the same way on every machine, or refused.
-    if !may_change || uniform_fits.is_err() && params.method_follows_memory {
+    let is_only = || params.method_follows_memory && problem.place.ranks.any(uniform_fits.is_err());
+    if !may_change || is_only() {
         return Ok(Tried::Solved(adaptive.solve(kernel, observer)));
     }
     let tolerance = adaptive.bound().value();
-    let tried = match adaptive.solve_if_suitable(kernel, observer) {
+    let reason = match adaptive.solve_if_suitable(kernel, observer) {
         Err(Unsuitable::Scattered { tile_fraction }) => {
-            Tried::Left(MethodReason::ScatteredContact { percent: 100.0 * tile_fraction })
+            MethodReason::ScatteredContact { percent: 100.0 * tile_fraction }
         }
-        Err(Unsuitable::Rough) => Tried::Left(MethodReason::ToleranceTooSmall { tolerance }),
-        Ok(solution) if solution.status() == Status::NotConverged => {
-            if observer.should_stop() || problem.place.is_shared() || uniform_fits.is_err() {
+        Err(Unsuitable::Rough) => MethodReason::ToleranceTooSmall { tolerance },
+        Ok(solution) => {
+            let is_last = problem.place.is_shared() || uniform_fits.is_err();
+            if solution.status() != Status::NotConverged || is_last || observer.should_stop() {
                 return Ok(Tried::Solved(solution));
             }
             let error = solution.info.certificate.error(adaptive.bound());
             let reason = MethodReason::NotCertified { error, tolerance };
             // The solution is kept meanwhile, with its problem, if there is memory for both.
-            let rest = params.memory_limit.map(|limit| limit.saturating_sub(adaptive.estimate().adaptive_bytes as u64));
-            match check_uniform(problem.heights.grid(), bytes, rest, Method::Uniform) {
-                Ok(()) => Tried::NotCertified(solution, reason),
-                Err(_) => Tried::Left(reason),
+            match fits_beside(adaptive.estimate().adaptive_bytes) {
+                Ok(()) => return Ok(Tried::NotCertified(solution, reason)),
+                Err(_) => reason,
             }
         }
-        Ok(solution) => return Ok(Tried::Solved(solution)),
     };
+    check_ranks(problem, &reason)?;
     uniform_fits?;
-    Ok(tried)
+    Ok(Tried::Left(reason))
 }
 
 /// The solution, or the error that carries it.
