@@ -87,7 +87,7 @@ fn energy_error(split: GapSplit, base_grid: Grid, grid: Grid, rng: &mut impl Rng
 }
 
 #[test]
-#[expect(clippy::print_stdout, reason = "docs/measurements-adaptive.md has the numbers")]
+#[expect(clippy::print_stdout, reason = "docs/adaptive-mesh.md has the numbers")]
 fn the_error_in_the_energy_norm_does_not_grow_with_the_levels() {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     for (error, bound) in [(1e-6, 4.5e-5), (2e-9, 4e-7), (1e-10, 4e-9)] {
@@ -106,7 +106,7 @@ fn the_error_in_the_energy_norm_does_not_grow_with_the_levels() {
 ///
 /// It depends neither on halved sides nor on the shape of the cell.
 #[test]
-#[expect(clippy::print_stdout, reason = "docs/measurements-adaptive.md has the numbers")]
+#[expect(clippy::print_stdout, reason = "docs/adaptive-mesh.md has the numbers")]
 fn the_error_in_the_energy_norm_is_the_same_on_any_grid() {
     let mut rng = ChaCha8Rng::seed_from_u64(4);
     for (error, bound) in [(1e-6, 4.5e-5), (2e-9, 4e-7), (1e-10, 4e-9)] {
@@ -324,20 +324,20 @@ const ENERGY: [ErrorBound; 2] = [ErrorBound::Energy(1e-2), ErrorBound::Energy(2e
 const RELATIVE: [ErrorBound; 2] = [ErrorBound::Relative(1e-6), ErrorBound::Relative(1e-8)];
 
 #[test]
-#[expect(clippy::print_stdout, reason = "docs/measurements-adaptive.md has the numbers")]
+#[expect(clippy::print_stdout, reason = "docs/adaptive-mesh.md has the numbers")]
 fn an_audit_by_fourier_transform_finds_no_more_than_is_claimed() {
     for_each_scene(&[ENERGY, RELATIVE].concat(), |name, scene, audited| println!("{}", audit(name, scene, audited)));
 }
 
 #[test]
-#[expect(clippy::print_stdout, reason = "docs/measurements-adaptive.md has the numbers")]
+#[expect(clippy::print_stdout, reason = "docs/adaptive-mesh.md has the numbers")]
 fn an_audit_on_any_grid_finds_no_more_than_is_claimed() {
     let bounds = [ENERGY[0], RELATIVE[0], RELATIVE[1]];
     for_any_grid(&bounds, |name, scene, audited| println!("{}", audit(name, scene, audited)));
 }
 
 #[test]
-#[expect(clippy::print_stdout, reason = "docs/measurements-adaptive.md has the numbers")]
+#[expect(clippy::print_stdout, reason = "docs/adaptive-mesh.md has the numbers")]
 fn an_audit_of_patches_finds_no_more_than_is_claimed() {
     let bounds = [ENERGY[0], RELATIVE[0], RELATIVE[1]];
     for_each_patch(&bounds, |name, scene, audited| println!("{}", audit(name, scene, audited)));
