@@ -64,14 +64,14 @@ impl Certificate {
     /// Whether the bound is met, and the load is within [`Certificate::LOAD_TOLERANCE`].
     #[must_use]
     pub fn meets(&self, bound: ErrorBound) -> bool {
-        // NaN meets no bound. A number beside a NaN does not count either.
-        let is_number = !self.penetration.is_nan();
-        is_number && self.error(bound) <= bound.value() && self.load <= Self::LOAD_TOLERANCE
+        // NaN meets no bound.
+        self.error(bound) <= bound.value() && self.load <= Self::LOAD_TOLERANCE
     }
 
-    /// The error that `bound` limits.
+    /// The error that `bound` limits. A number beside a NaN does not count.
     pub(crate) fn error(&self, bound: ErrorBound) -> f64 {
         match bound {
+            _ if self.penetration.is_nan() || self.complementarity.is_nan() => f64::NAN,
             ErrorBound::Energy(_) => self.energy,
             ErrorBound::Relative(_) => self.penetration.max(self.complementarity),
         }
@@ -125,8 +125,11 @@ mod tests {
 
     #[test]
     fn what_is_not_a_number_meets_no_bound() {
-        let certificate = Certificate { penetration: f64::NAN, ..Certificate::EXACT };
-        assert!(!certificate.meets(ErrorBound::Energy(0.9)) && !certificate.meets(ErrorBound::Relative(0.9)));
+        let overlap = Certificate { penetration: f64::NAN, ..Certificate::EXACT };
+        let of_plastic = Certificate { complementarity: f64::NAN, ..Certificate::EXACT };
+        for certificate in [overlap, of_plastic] {
+            assert!(!certificate.meets(ErrorBound::Energy(0.9)) && !certificate.meets(ErrorBound::Relative(0.9)));
+        }
         let unloaded = Certificate { load: 1e-9, ..Certificate::EXACT };
         assert!(!unloaded.meets(ErrorBound::Relative(0.9)));
         assert!(Certificate::EXACT.meets(ErrorBound::Energy(1e-5)));

@@ -84,7 +84,6 @@ impl Descent<'_> {
         if self.stiffness.is_none() {
             return self.settle(sums);
         }
-        corrections.set_mean(stiffness);
         let factor = (-with_gap / curvature).clamp(STEPS[0], STEPS[1]);
         let (offset, empty) = (self.problem.offset(), GapSums::empty(self.pressed, bounds.hardness));
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
@@ -113,13 +112,13 @@ impl Descent<'_> {
         let Control::Penetration(_) = self.problem.bounds.control else { return };
         let n_cell = self.n_cell();
         let secant = sums.pressure * sums.pressure / (n_cell * sums.work());
-        let stiffness = match sums.has_plastic() {
-            true if self.stiffness.is_some() => return,
-            true => self.stiffness_of_uniform(n_active, |_, active| active),
-            false if sums.n_contact > LARGE_CONTACT * n_cell => {
+        let stiffness = match (sums.has_plastic(), self.stiffness) {
+            (true, Some(stiffness)) => stiffness,
+            (true, None) => self.stiffness_of_uniform(n_active, |_, active| active),
+            _ if sums.n_contact > LARGE_CONTACT * n_cell => {
                 self.stiffness_of_uniform(sums.n_contact, |p, _| p > 0.0).max(secant)
             }
-            false => secant,
+            _ => secant,
         };
         if stiffness.is_finite() && stiffness > 0.0 {
             self.operators.corrections.set_mean(stiffness);

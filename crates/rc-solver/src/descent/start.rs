@@ -91,10 +91,8 @@ impl Descent<'_> {
             Control::Penetration(_) if usable => {}
             // The overlap finds the right places. The pressure is scaled at once.
             Control::Penetration(_) => {
-                self.overlap(self.problem.offset());
-                let sums = self.fresh_gap();
-                // If all pressures are beyond the hardness, nothing can be scaled. The start is then the pressure
-                // limited to the hardness.
+                let sums = self.overlap(self.problem.offset());
+                // On a coarse level, nothing may overlap.
                 let scale = sums.scale_to_no_gap().filter(|scale| *scale > 0.0);
                 return scale.map_or(sums, |scale| self.rescale(scale));
             }
@@ -102,14 +100,17 @@ impl Descent<'_> {
         self.refresh()
     }
 
-    /// Sets the pressure to the overlap with a rigid plane at `floor`. Its unit is that of length.
-    fn overlap(&mut self, floor: f64) {
+    /// Sets the pressure to the overlap with a rigid plane at `floor`, and computes the gap.
+    ///
+    /// Its unit is that of length, so no hardness limits it.
+    fn overlap(&mut self, floor: f64) -> GapSums {
         let len = self.layout.len();
         parallel::for_each(self.elements().blocks(len), |block| {
             for (p, h) in block.pressure.iter_mut().zip(block.heights) {
                 *p = (h - floor).max(0.0);
             }
         });
+        self.fresh_gap_under(f64::INFINITY)
     }
 
     /// Starts from the overlap with a rigid plane that carries about the mean pressure `wanted`.
@@ -124,8 +125,7 @@ impl Descent<'_> {
         let mut search = DepthSearch::new(range);
         for attempt in 1..=MAX_OVERLAPS {
             let floor = highest - search.depth;
-            self.overlap(floor);
-            let sums = self.fresh_gap();
+            let sums = self.overlap(floor);
             let carried = sums.pressure / n_cell;
             let scale = (sums.pressure_overlap + (self.problem.offset() - floor) * sums.pressure) / sums.work();
             let load = scale * carried;

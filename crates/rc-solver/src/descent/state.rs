@@ -152,16 +152,17 @@ impl<'a> Descent<'a> {
 
     /// Computes the gap from a fresh application of L, in double precision.
     pub(crate) fn fresh_gap(&mut self) -> GapSums {
+        self.fresh_gap_under(self.problem.bounds.hardness)
+    }
+
+    /// [`Descent::fresh_gap`], with sums for another hardness.
+    pub(crate) fn fresh_gap_under(&mut self, hardness: f64) -> GapSums {
         self.info.operator_applications += 1;
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         // Fresh gaps are rare. An operator keeps no memory for vectors while the other one works.
         self.operators.corrections.release();
-        let sums = fresh_gap(
-            &mut *self.operators.fresh,
-            self.problem,
-            elements,
-            GapSums::empty(self.pressed, self.problem.bounds.hardness),
-        );
+        let empty = GapSums::empty(self.pressed, hardness);
+        let sums = fresh_gap(&mut *self.operators.fresh, self.problem, elements, empty);
         self.operators.fresh.release();
         self.pressed = sums.next_pressed();
         sums

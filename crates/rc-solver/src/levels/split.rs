@@ -14,20 +14,28 @@ const DIFFERENCE: f64 = 1e-8;
 
 /// Refuses a `split` that is not of the solid of its `kernel`, or whose bounds do not hold.
 ///
-/// The symbols on `grid` are compared, or the responses where borders are free. The longest waves and a sample of the
-/// others are checked. Aliases of the deviation are left out, because the base grid resolves it.
+/// The symbols on `grid` are compared, or the responses where borders are free. The longest waves and a sample of each
+/// octave are checked. Aliases of the deviation are left out, because the base grid resolves it.
 pub(crate) fn check_split(kernel: &dyn Kernel, split: &dyn SplitByScale, grid: Grid) -> Result<(), ProblemError> {
     let check = Check { kernel: kernel.name(), split, grid };
     if let (Some(own), Some(of_split)) = (kernel.free_response(grid), FreeLove.free_response(grid)) {
-        let mut distances = places([grid.nx(), grid.ny()], FEWEST_WAVES);
+        let mut distances = octaves([grid.nx(), grid.ny()]);
         return distances.try_for_each(|at| check.same("free response", at, own(at.0, at.1), of_split(at.0, at.1)));
     }
     let (own, half_space) = (kernel.symbol(grid), Love.symbol(grid));
-    let waves = places([grid.nx() / 2 + 1, grid.ny() / 2 + 1], FEWEST_WAVES);
+    let waves = octaves([grid.nx() / 2 + 1, grid.ny() / 2 + 1]);
     waves.filter(|&wave| wave != (0, 0)).try_for_each(|wave| {
         let deviation = check.deviation(wave)?;
         check.same("symbol", wave, own(wave.0, wave.1), half_space(wave.0, wave.1) + deviation)
     })
+}
+
+/// As many waves or distances of each half, quarter, ... of these.
+///
+/// A sample of all has hardly any of the long waves, at which solids differ.
+fn octaves([columns, rows]: [usize; 2]) -> impl Iterator<Item = (usize, usize)> {
+    let halvings = 0..=columns.max(rows).ilog2();
+    halvings.flat_map(move |n| places([columns, rows].map(|side| (side >> n).max(1)), FEWEST_WAVES))
 }
 
 /// A split that is checked.
@@ -42,8 +50,8 @@ impl Check<'_> {
     fn deviation(&self, (kx, ky): (usize, usize)) -> Result<f64, ProblemError> {
         let q = TAU * self.grid.waves(kx, ky);
         let (deviation, curvature) = (self.split.deviation(q), self.split.curvature());
-        // A wave in the transform of a function is at most the integral of the function's magnitude.
-        let of_wave = q * q * deviation.abs();
+        // The pressure (1 + cos q x)/2 has this second derivative.
+        let of_wave = 0.5 * q * q * deviation.abs();
         let is_bounded = of_wave <= curvature;
         if !is_bounded {
             return Err(self.fault("curvature", (kx, ky), curvature, (of_wave, " or more")));
@@ -78,4 +86,35 @@ impl Check<'_> {
 
 fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.sin() / x }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A split that deviates at waves of one length only, as its kernel does not.
+    struct OneLength(f64);
+
+    impl SplitByScale for OneLength {
+        fn deviation(&self, q: f64) -> f64 {
+            if (q / (TAU * self.0) - 1.0).abs() < 1e-9 { 1e-3 } else { 0.0 }
+        }
+
+        fn deviates_below(&self, _tolerance: f64) -> f64 {
+            2.0 * TAU * self.0
+        }
+
+        fn curvature(&self) -> f64 {
+            f64::MAX
+        }
+    }
+
+    #[test]
+    fn a_deviation_of_long_waves_is_found_on_a_large_grid() {
+        let grid = Grid::square(4096).expect("a grid");
+        check_split(&Love, &rc_kernel::HalfSpace, grid).expect("its own");
+        for waves in 1..=15 {
+            assert!(check_split(&Love, &OneLength(f64::from(waves)), grid).is_err(), "{waves} waves");
+        }
+    }
 }

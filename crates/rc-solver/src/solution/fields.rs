@@ -56,7 +56,7 @@ impl Solution<'_> {
     #[must_use]
     pub fn displacement(&self) -> &Field {
         self.displacement.get_or_init(|| {
-            self.collect(self.grid(), |take| hand_out(take, |take| self.solved.displacement_rows(take)))
+            self.collect(self.grid(), |take| hand_out(&self.ranks(), take, |take| self.solved.displacement_rows(take)))
         })
     }
 
@@ -67,10 +67,10 @@ impl Solution<'_> {
     ///
     /// # Errors
     /// The error that `take` returns.
-    pub fn pressure_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+    pub fn pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match self.pressure.get() {
-            Some(pressure) => take(0, pressure.values()),
-            None => hand_out(take, |take| self.solved.pressure_rows(Receiver::First, take)),
+            Some(pressure) => self.rows_of(pressure, take),
+            None => hand_out(&self.ranks(), take, |take| self.solved.pressure_rows(Receiver::First, take)),
         }
     }
 
@@ -81,7 +81,7 @@ impl Solution<'_> {
     /// # Errors
     /// The error that `take` returns.
     pub fn own_pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        hand_out(take, |take| self.solved.pressure_rows(Receiver::Each, take))
+        hand_out(&self.ranks(), take, |take| self.solved.pressure_rows(Receiver::Each, take))
     }
 
     /// Passes the rows of [`Solution::gap`] to `take`, as [`Solution::pressure_rows`] does.
@@ -90,10 +90,10 @@ impl Solution<'_> {
     ///
     /// # Errors
     /// The error that `take` returns.
-    pub fn gap_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+    pub fn gap_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match (self.solved.stored(), self.gap.get()) {
-            (Some([_, gap]), _) if self.how.hardness.is_infinite() => take(0, gap.values()),
-            (_, Some(gap)) => take(0, gap.values()),
+            (Some([_, gap]), _) if self.how.hardness.is_infinite() => self.rows_of(gap, take),
+            (_, Some(gap)) => self.rows_of(gap, take),
             _ => self.part_rows(GapPart::Open, Rows::on_grid(Receiver::First), take),
         }
     }
@@ -102,9 +102,9 @@ impl Solution<'_> {
     ///
     /// # Errors
     /// The error that `take` returns.
-    pub fn plastic_gap_rows<E>(&self, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+    pub fn plastic_gap_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match self.plastic_gap.get() {
-            Some(gap) => take(0, gap.values()),
+            Some(gap) => self.rows_of(gap, take),
             None => self.part_rows(GapPart::Plastic, Rows::on_grid(Receiver::First), take),
         }
     }
@@ -117,6 +117,11 @@ impl Solution<'_> {
     /// The error that `take` returns.
     pub fn own_gap_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         self.part_rows(GapPart::Open, Rows::on_grid(Receiver::Each), take)
+    }
+
+    /// Passes all rows of a field to `take`, on the first rank.
+    fn rows_of<E>(&self, field: &Field, mut take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
+        if self.ranks().rank() == 0 { take(0, field.values()) } else { Ok(()) }
     }
 
     /// A field on `grid` from its rows, which `rows` passes on in order.
@@ -142,6 +147,6 @@ impl Solution<'_> {
         rows: Rows,
         take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     ) -> Result<(), E> {
-        hand_out(take, |take| self.solved.gap_rows(part, rows, take))
+        hand_out(&self.ranks(), take, |take| self.solved.gap_rows(part, rows, take))
     }
 }

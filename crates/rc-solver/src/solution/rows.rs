@@ -1,5 +1,7 @@
 //! The rows of a field, which are handed out one after the other.
 
+use rc_comm::Ranks;
+
 /// The receiver of the rows of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Receiver {
@@ -36,15 +38,19 @@ pub(crate) struct Halted;
 /// What gets the rows: one or more consecutive rows in one slice, and the index of the first of them.
 pub(crate) type TakeRows<'t> = &'t mut dyn FnMut(usize, &[f64]) -> Result<(), Halted>;
 
-/// Hands rows to `take`, which may fail with an error of its own. Stops at the first error.
+/// Hands rows to `take`, which may fail with an error of its own. It gets no more rows then.
 pub(crate) fn hand_out<E>(
+    ranks: &Ranks,
     mut take: impl FnMut(usize, &[f64]) -> Result<(), E>,
     rows: impl FnOnce(TakeRows<'_>) -> Result<(), Halted>,
 ) -> Result<(), E> {
-    let mut error = None;
-    let ended = rows(&mut |first, rows| take(first, rows).map_err(|failure| (error = Some(failure), Halted).1));
-    match (ended, error) {
-        (Err(Halted), Some(error)) => Err(error),
-        _ => Ok(()),
-    }
+    let mut taken = Ok(());
+    let _ = rows(&mut |first, rows| {
+        if taken.is_ok() {
+            taken = take(first, rows);
+        }
+        // Other ranks hand out the rest all the same.
+        if taken.is_ok() || ranks.size() > 1 { Ok(()) } else { Err(Halted) }
+    });
+    taken
 }

@@ -90,11 +90,12 @@ impl<'a> Plan<'a> {
                 let how = how(Method::Adaptive, reason);
                 let found = |solution: TileSolution<'a>| Solution::new(how, solution.h_max, Box::new(solution));
                 match tried {
-                    Tried::Solved(solution) => return converged(found(solution)),
-                    Tried::Left(reason) => {
-                        check_ranks(&problem, &reason)?;
-                        (None, ChosenMethod::Uniform, reason)
+                    Tried::Solved(solution) => {
+                        // An error carries a solution without a borrow, which need not be a copy then.
+                        drop((shared, levels));
+                        return converged(found(solution));
                     }
+                    Tried::Left(reason) => (None, ChosenMethod::Uniform, reason),
                     Tried::NotCertified(solution, reason) => (Some(found(solution)), ChosenMethod::Uniform, reason),
                 }
             }
@@ -115,7 +116,8 @@ impl<'a> Plan<'a> {
         let h_max = heights.max();
         let solved = GridSolved { solution, response: Response::Kernel(problem.kernel), hardness: problem.hardness };
         let solution = Solution::new(how, h_max, Box::new(solved));
-        let error = |solution: &Solution<'_>| solution.certificate().error(bound);
+        // NaN counts as infinite.
+        let error = |solution: &Solution<'_>| solution.certificate().error(bound).min(f64::INFINITY);
         match before {
             // The uniform method did not end either, perhaps because the observer ended it.
             Some(before) if solution.status() == Status::NotConverged && error(&before) < error(&solution) => {
@@ -147,28 +149,37 @@ fn by_adaptive<'a>(
     (levels, reason): (&TileLevels<'a>, &MethodReason),
     observer: &dyn Observer,
 ) -> Result<Tried<'a>, SolveError> {
-    let bytes = bytes_per_element(problem.boundary());
-    let uniform_fits = check_uniform(problem.heights.grid(), bytes, params.memory_limit, Method::Uniform);
+    let fits_beside = |bytes: f64| {
+        let limit = params.memory_limit.map(|limit| limit.saturating_sub(bytes as u64));
+        check_uniform(problem.heights.grid(), bytes_per_element(problem.boundary()), limit, Method::Uniform)
+    };
+    let uniform_fits = fits_beside(0.0);
     // If the method may not follow memory, a load is solved in the same way on every machine, or refused.
-    let may_leave =
-        matches!(reason, MethodReason::SmallContact { .. }) && (uniform_fits.is_ok() || !params.method_follows_memory);
+    let is_only = || params.method_follows_memory && problem.place.ranks.any(uniform_fits.is_err());
+    let may_leave = matches!(reason, MethodReason::SmallContact { .. }) && !is_only();
     let (bound, tolerance) = (levels.params.solve.bound, levels.params.solve.bound.value());
-    let tried = match levels.solve(may_leave, observer) {
+    let reason = match levels.solve(may_leave, observer) {
         Err(Unsuitable::Scattered { tile_fraction }) => {
-            Tried::Left(MethodReason::ScatteredContact { percent: 100.0 * tile_fraction })
+            MethodReason::ScatteredContact { percent: 100.0 * tile_fraction }
         }
-        Err(Unsuitable::Rough) => Tried::Left(MethodReason::ToleranceTooSmall { tolerance }),
+        Err(Unsuitable::Rough) => MethodReason::ToleranceTooSmall { tolerance },
         Ok(solution) => {
-            let is_certified = solution.status() != Status::NotConverged;
-            if !may_leave || is_certified || observer.should_stop() || problem.place.is_shared() {
+            let is_last = !may_leave || problem.place.is_shared() || uniform_fits.is_err();
+            if is_last || solution.status() != Status::NotConverged || observer.should_stop() {
                 return Ok(Tried::Solved(solution));
             }
             let error = solution.info.certificate.error(bound);
-            Tried::NotCertified(solution, MethodReason::NotCertified { error, tolerance })
+            let reason = MethodReason::NotCertified { error, tolerance };
+            // The solution is kept meanwhile, with its problem, if there is memory for both.
+            match fits_beside(levels.estimate().adaptive_bytes) {
+                Ok(()) => return Ok(Tried::NotCertified(solution, reason)),
+                Err(_) => reason,
+            }
         }
     };
+    check_ranks(problem, &reason)?;
     uniform_fits?;
-    Ok(tried)
+    Ok(Tried::Left(reason))
 }
 
 /// The solution, or the error that carries it.

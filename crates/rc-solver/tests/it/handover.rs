@@ -22,9 +22,10 @@ fn what_the_adaptive_method_cannot_certify_is_solved_by_the_uniform_one() {
     let SolveError::NotConverged { solution, .. } = asked else { panic!("{asked}") };
     assert_eq!(solution.method(), Method::Adaptive);
     // If the uniform grid does not fit into memory, the best solution is that of the adaptive method.
-    let little = SolveParams { memory_limit: Some(1_300_000), ..params };
-    let SolveError::NotConverged { solution, .. } = solve(&heights, load, &little).expect_err("not certified") else {
-        panic!("not solved")
-    };
-    assert_eq!(solution.method(), Method::Adaptive);
+    for method_follows_memory in [true, false] {
+        let little = SolveParams { memory_limit: Some(1_300_000), method_follows_memory, ..params };
+        let error = solve(&heights, load, &little).expect_err("not certified");
+        let SolveError::NotConverged { solution, .. } = error else { panic!("{error}") };
+        assert_eq!(solution.method(), Method::Adaptive);
+    }
 }

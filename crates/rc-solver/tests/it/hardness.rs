@@ -86,6 +86,19 @@ fn a_hardness_that_nothing_reaches_changes_no_bit() {
     }
 }
 
+/// The first overlap, in λ, is above the hardness in E*. The two units have nothing to do with each other.
+#[test]
+fn a_hardness_below_the_first_overlap_changes_no_bit() {
+    let wave = |at: DVec2| 5e-3 * ((TAU * at.x).cos() + (TAU * at.y).cos());
+    let heights = Field::from_fn(Grid::square(64).expect("a grid"), wave);
+    for control in [Control::MeanPressure(1e-7), Control::MeanPressure(1e-6)] {
+        let solve = |hardness| solve(&heights, control, hardness, &SolveParams::default().by(Method::Uniform));
+        let (elastic, hard) = (solve(f64::INFINITY).expect("solvable"), solve(4e-3).expect("solvable"));
+        assert!(elastic.pressure().max() < 2e-3, "{:e}", elastic.pressure().max());
+        assert_eq!((elastic.info(), elastic.pressure()), (hard.info(), hard.pressure()), "{control:?}");
+    }
+}
+
 #[test]
 fn pressures_are_those_of_elimination() {
     for (nx, ny) in [(16, 16), (12, 20)] {

@@ -8,6 +8,7 @@ mod hardness;
 mod hardness_of_solids;
 mod observers;
 mod operators;
+mod over_ranks;
 mod split;
 mod stops;
 mod uniform;
