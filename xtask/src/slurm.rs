@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail, ensure};
 use rc_figures::repository;
 
-use crate::process::{Step, path_of};
+use crate::process::{cargo, path_of, run as run_step};
 
 /// Runs a job array on its own Slurm, and kills and requeues a task.
 ///
@@ -42,9 +42,9 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
         eprintln!("slurm: skipped, there is no {missing} here (Debian: apt-get install slurm-wlm)");
         return Ok(());
     }
-    Step { environment: &[], words: &["build", "--release", "--package", "rc-cli"] }.run(&[])?;
+    run_step(&mut cargo(&["build", "--release", "--package", "rc-cli"]))?;
     let folder = tempfile::tempdir()?;
-    let rc = Rc { program: repository::root().join("target/release/rc"), folder: folder.path().to_owned() };
+    let rc = Rc { program: repository::target().join("release/rc"), folder: folder.path().to_owned() };
     rc.run(&[&SWEEP[..], &["--quiet", "--out", "whole"]].concat())?;
     let slurm = Slurm::start(folder.path())?;
     let job = slurm.submit(&rc)?;

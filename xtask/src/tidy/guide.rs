@@ -4,12 +4,10 @@
 
 use rc_figures::repository::{Sources, has_extension};
 
-use super::complaint::Complaint;
-
 const SUMMARY: &str = "docs/SUMMARY.md";
 
 /// Checks that each document is in the summary, and that links between texts work.
-pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
+pub(super) fn check(sources: &Sources) -> Vec<String> {
     let summary = sources.get(SUMMARY).map_or("", String::as_str);
     let documents =
         sources.keys().filter_map(|path| path.strip_prefix("docs/")).filter(|name| has_extension(name, "md"));
@@ -19,7 +17,7 @@ pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
     missing.chain(texts.flat_map(|(path, text)| check_links(path, text, sources))).collect()
 }
 
-fn check_links(path: &str, text: &str, sources: &Sources) -> Vec<Complaint> {
+fn check_links(path: &str, text: &str, sources: &Sources) -> Vec<String> {
     let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
     let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     // Folders and pictures are not texts, and other addresses are outside of the repository.
