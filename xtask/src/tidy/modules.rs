@@ -7,6 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rc_figures::repository::Sources;
 
+use super::paper_map::defines;
+
 const PAGE: &str = "ARCHITECTURE.md";
 const HEADING: &str = "## Rooms of rc-solver";
 const SOLVER: &str = "crates/rc-solver/src/";
@@ -90,20 +92,21 @@ fn folder_and_module(path: &str) -> Option<(&str, String)> {
 /// The arrows between the modules of a crate, whose sources are in `folder`.
 fn arrows(folder: &str, sources: &Sources) -> Arrows {
     let of_folder = |path: &str| folder_and_module(path).filter(|(of, _)| *of == folder).map(|(_, module)| module);
-    let modules: Vec<_> = sources.iter().filter_map(|(path, text)| Some((of_folder(path)?, text))).collect();
-    let mut arrows: Arrows = modules.iter().map(|(module, _)| (module.clone(), BTreeSet::new())).collect();
-    for (module, text) in modules {
-        let used: Vec<String> = paths(text).iter().filter_map(|path| resolved(&module, path, &arrows)).collect();
-        arrows.entry(module.clone()).or_default().extend(used.into_iter().filter(|other| *other != module));
-    }
-    arrows
+    let modules = sources.iter().filter_map(|(path, text)| Some((of_folder(path)?, code(text))));
+    let modules: BTreeMap<String, &str> = modules.collect();
+    let used = |(module, code): (&String, &&str)| {
+        let used = paths(code).into_iter().filter_map(|path| resolved(module, &path, &modules));
+        (module.clone(), used.filter(|other| other != module).collect())
+    };
+    modules.iter().map(used).collect()
 }
 
-/// The module that a path in the module `from` leads to.
+/// The module that defines what a path in the module `from` names.
 ///
-/// `None` for paths that begin with a name of another crate.
-fn resolved(from: &str, path: &str, modules: &Arrows) -> Option<String> {
+/// `None` for names of other crates, and for those that a module only re-exports.
+fn resolved(from: &str, path: &str, modules: &BTreeMap<String, &str>) -> Option<String> {
     let mut at: Vec<&str> = from.split("::").filter(|name| !name.is_empty()).collect();
+    let mut item = None;
     for (i, word) in path.split("::").enumerate() {
         match (i, word) {
             (0, "crate") => at.clear(),
@@ -111,20 +114,31 @@ fn resolved(from: &str, path: &str, modules: &Arrows) -> Option<String> {
             (_, "super") => drop(at.pop()),
             _ if modules.contains_key(&[&at[..], &[word]].concat().join("::")) => at.push(word),
             (0, _) => return None,
-            _ => break,
+            _ => {
+                item = Some(word);
+                break;
+            }
         }
     }
-    Some(at.join("::"))
+    let module = at.join("::");
+    let code = modules.get(&module)?;
+    item.is_none_or(|item| defines(code, item)).then_some(module)
 }
 
-/// The paths `a::b` in the code of a file, outside of its tests and of what it re-exports.
-fn paths(text: &str) -> Vec<String> {
-    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+/// The code of a file before its tests.
+fn code(text: &str) -> &str {
+    text.split("mod tests {").next().unwrap_or_default()
+}
+
+/// The paths `a::b` in code, outside of what it re-exports.
+fn paths(code: &str) -> Vec<String> {
     let is_in_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
     let (mut found, mut is_reexport) = (Vec::new(), false);
     // What each open brace puts before the names in it: the path of a list, or nothing.
     let mut before = vec![String::new()];
     for line in code.lines().map(|line| line.split("//").next().unwrap_or_default()) {
+        // A visibility uses no module.
+        let line = line.split_once("pub(in ").and_then(|(_, rest)| rest.split_once(')')).map_or(line, |(_, rest)| rest);
         is_reexport |= line.trim_start().starts_with("pub") && line.contains(" use ");
         if is_reexport {
             is_reexport = !line.contains(';');
@@ -139,7 +153,7 @@ fn paths(text: &str) -> Vec<String> {
             if piece.ends_with('}') && before.len() > 1 {
                 before.pop();
             }
-            found.extend(Some(path).filter(|path| !word.is_empty() && path.contains("::")));
+            found.extend(Some(path).filter(|path| !word.is_empty() && path.contains("::") && !path.ends_with(':')));
         }
     }
     found
@@ -157,27 +171,29 @@ mod tests {
     #[test]
     fn circles_are_found_and_declarations_comments_and_tests_are_none() {
         let found = |a: &str, b: &str| {
+            let (a, b) = (format!("struct T;\n{a}"), format!("mod c;\nstruct S;\n{b}"));
             check_circles(&sources(&[
                 ("lib.rs", "mod a; mod b;\npub use b::S;"),
-                ("a.rs", a),
-                ("b/mod.rs", b),
+                ("a.rs", &a),
+                ("b/mod.rs", &b),
                 ("b/c.rs", ""),
             ]))
         };
         for (a, b) in [
             ("use crate::b::S;", "use crate::a::T;"),
             ("use crate::{\n    b::{S, c},\n};", "fn f() -> super::a::T {}"),
-            ("fn f(s: crate::b::S) {}", "use c::T;\nuse super::a;"),
+            ("fn f(s: crate::b::S) {}", "use c::U;\nuse super::a;"),
         ] {
-            assert_eq!(
-                found(a, b),
-                [format!("{SOLVER}: a, b use each other in a circle; move what both need to a file of its own")]
-            );
+            let complaint =
+                format!("{SOLVER}: a, b use each other in a circle; move what both need to a file of its own");
+            assert_eq!(found(a, b), [complaint], "{a} {b}");
         }
         for b in [
             "// crate::a::T",
             "pub(crate) use crate::a::T;",
+            "pub(in crate::a) fn f() {}",
             "#[cfg(test)]\nmod tests {\n    use crate::a::T;\n}",
+            "use crate::S;",
             "use a::T;",
         ] {
             assert_eq!(found("use crate::b::S;", b), Vec::<String>::new(), "{b}");
@@ -187,19 +203,20 @@ mod tests {
     #[test]
     fn a_child_may_use_its_parent_only_if_the_parent_does_not_use_it() {
         let of = |parent: &str| {
-            check_circles(&sources(&[("lib.rs", ""), ("a/mod.rs", parent), ("a/b.rs", "use super::S;")]))
+            let parent = format!("mod b;\nstruct S;\n{parent}");
+            check_circles(&sources(&[("lib.rs", ""), ("a/mod.rs", &parent), ("a/b.rs", "struct T;\nuse super::S;")]))
         };
-        assert_eq!(of("mod b;\npub(crate) use b::T;"), Vec::<String>::new());
-        assert_eq!(of("mod b;\nuse b::T;").len(), 1);
+        assert_eq!(of("pub(crate) use b::T;"), Vec::<String>::new());
+        assert_eq!(of("use b::T;").len(), 1);
     }
 
     #[test]
     fn rooms_use_each_other_as_drawn() {
         let complaints = |page: &str| {
-            let mut files =
-                sources(&[("a/y.rs", ""), ("b/x.rs", "use crate::a::y::Y;\nuse crate::lone::f;"), ("lone.rs", "")]);
-            files.insert(PAGE.to_owned(), format!("{HEADING}\n\n```\n{page}\n```\n"));
-            check_rooms(&files)
+            let b = "use crate::a::y::Y;\nuse crate::lone::f;";
+            let rooms = [("a/mod.rs", ""), ("a/y.rs", "struct Y;"), ("b/x.rs", b), ("lone.rs", "fn f() {}")];
+            let page = format!("{HEADING}\n\n```\n{page}\n```\n");
+            check_rooms(&sources(&rooms).into_iter().chain([(PAGE.to_owned(), page)]).collect())
         };
         assert_eq!(complaints("a\nb ─> a"), Vec::<String>::new());
         for (page, part) in [

@@ -53,7 +53,7 @@ fn check_row(row: &str, sources: &Sources) -> Vec<String> {
 }
 
 /// Whether `text` defines `item`.
-fn defines(text: &str, item: &str) -> bool {
+pub(super) fn defines(text: &str, item: &str) -> bool {
     const KEYWORDS: &[&str] = &["fn", "struct", "enum", "trait", "const", "type", "mod"];
     text.match_indices(item).any(|(at, _)| {
         let is_whole = !text[at + item.len()..].starts_with(|c: char| c.is_alphanumeric() || c == '_');
@@ -61,7 +61,7 @@ fn defines(text: &str, item: &str) -> bool {
     })
 }
 
-/// Path and name of each function with a tag, as the map writes them; of other places the path.
+/// Path and name of each function with a tag, as the map writes them; of other places a remark.
 fn tagged(tag: &str, sources: &Sources) -> Vec<String> {
     let mut found = Vec::new();
     for (path, text) in sources.iter().filter(|(path, _)| path.starts_with("crates/") && has_extension(path, "rs")) {
@@ -74,7 +74,7 @@ fn tagged(tag: &str, sources: &Sources) -> Vec<String> {
                 .find(|line| !line.starts_with("///") && !line.starts_with("#["));
             let function = item.filter(|_| is_documentation).and_then(|item| item.split_once("fn "));
             let name = function.and_then(|(_, rest)| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next());
-            found.push(name.map_or(path.clone(), |name| format!("`{path}`: `{name}`")));
+            found.push(name.map_or(format!("another place of {path}"), |name| format!("`{path}`: `{name}`")));
         }
     }
     found
