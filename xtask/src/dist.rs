@@ -1,6 +1,6 @@
 //! `cargo xtask dist`: the files of a release.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::{env, fs};
 
@@ -19,7 +19,7 @@ pub(crate) struct Args {
     /// Makes only the binary
     #[arg(long)]
     binary: bool,
-    /// Another profile of cargo, for instance dev, to try this command quickly
+    /// Another profile of cargo, for instance release, to try this command quickly
     #[arg(long, default_value = "dist")]
     profile: String,
 }
@@ -49,7 +49,7 @@ fn build_binary(profile: &str, path: &Path) -> Result<String> {
     let mut build = cargo(&["build", "--package", "rc-cli", "--bin", "rc", "--profile", profile]);
     build.args(target.iter().flat_map(|target| ["--target", target]));
     run_step(&mut build)?;
-    let built = binary(&repository::target(), target.as_deref(), profile);
+    let built = repository::target().join(target.as_deref().unwrap_or_default()).join(profile).join("rc");
     let bytes = fs::copy(&built, path).with_context(|| format!("no binary at {}", built.display()))?;
     let output = Command::new(path).arg("--version").output().context("the binary does not start")?;
     ensure!(output.status.success(), "{} --version failed", path.display());
@@ -73,13 +73,6 @@ fn musl_target() -> Result<Option<String>> {
     Ok((!folder.is_empty() && Path::new(&folder).is_dir()).then(musl_name))
 }
 
-/// Path of the binary that cargo builds.
-fn binary(folder: &Path, target: Option<&str>, profile: &str) -> PathBuf {
-    // Cargo's folder of the profile `dev` has another name, for historical reasons.
-    let profile = if profile == "dev" { "debug" } else { profile };
-    folder.join(target.unwrap_or_default()).join(profile).join("rc")
-}
-
 /// The section of a version in the change log, without its heading.
 fn section<'a>(changes: &'a str, version: &str) -> Option<&'a str> {
     let (_, after) = changes.split_once(&format!("\n## [{version}]"))?;
@@ -90,13 +83,6 @@ fn section<'a>(changes: &'a str, version: &str) -> Option<&'a str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_binary_is_where_cargo_puts_it() {
-        let path = |target, profile| binary(Path::new("target"), target, profile);
-        assert_eq!(path(None, "dev"), Path::new("target/debug/rc"));
-        assert_eq!(path(Some("a-b-c"), "dist"), Path::new("target/a-b-c/dist/rc"));
-    }
 
     #[test]
     fn the_notes_are_the_section_of_the_version() {

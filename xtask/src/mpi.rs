@@ -4,13 +4,12 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
 use rc_figures::repository;
 use serde_json::{Map, Value};
 
-use crate::process::{cargo, path_of, run as run_step};
+use crate::process::{cargo, path_of, run as run_step, wait};
 
 /// Builds rc-mpi, compares its results with those of `rc solve`, and kills a rank.
 ///
@@ -47,9 +46,6 @@ const ENVIRONMENT: [(&str, &str); 4] = [
     ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"),
 ];
 
-/// Time after which the run counts as failed.
-const PATIENCE: Duration = Duration::from_secs(300);
-
 #[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
 pub(crate) fn run(_args: &Args) -> Result<()> {
     if let Some(missing) = PROGRAMS.iter().find(|program| path_of(program).is_none()) {
@@ -84,19 +80,16 @@ fn lose_a_rank(programs: &Programs) -> Result<()> {
     programs.solve(LONG, "alone")?;
     let mut run = programs.mpirun(3, LONG, &words).stderr(Stdio::null()).spawn()?;
     let checkpoint = programs.folder.join("levels");
-    let started = Instant::now();
-    // The base grid has 256 elements per side, so four levels are kept before the finest.
-    let mut kept = 0;
-    let mut last = None;
-    while kept < 3 {
-        ensure!(started.elapsed() < PATIENCE, "no checkpoint after {} s", PATIENCE.as_secs());
+    let (mut kept, mut last) = (0, None);
+    wait("third checkpoint", || {
         ensure!(run.try_wait()?.is_none(), "the run has ended before its checkpoint");
         let written = checkpoint.metadata().and_then(|file| file.modified()).ok();
         if written.is_some() && written != last {
             (kept, last) = (kept + 1, written);
         }
-        std::thread::sleep(Duration::from_millis(5));
-    }
+        // The base grid has 256 elements per side, so four levels are kept before the finest.
+        Ok(kept == 3)
+    })?;
     let pid = std::fs::read_to_string(programs.folder.join("pid-1"))?;
     let killed = Command::new("kill").args(["-KILL", pid.trim()]).status()?;
     ensure!(killed.success(), "rank 1 was faster than the kill");

@@ -166,18 +166,3 @@ fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     }
     Ok(())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_workspace_has_the_forks_in_place_of_the_originals() {
-        let copy = tempfile::tempdir().expect("a temporary folder");
-        prepare(copy.path()).expect("a workspace");
-        for Fork { name, .. } in FORKS {
-            assert!(copy.path().join(format!("crates/my-{name}/src/lib.rs")).exists());
-            assert!(!copy.path().join("crates").join(name).exists(), "{name} itself is not there");
-        }
-    }
-}

@@ -9,6 +9,7 @@ mod guide;
 mod modules;
 mod named;
 mod paper_map;
+mod snapshots;
 
 use anyhow::{Result, bail};
 
@@ -16,9 +17,9 @@ use rc_figures::repository::{self, Sources};
 
 /// Checks the rules of this repository that the compiler does not know.
 ///
-/// They are about dependency arrows, unused dependencies, circles between modules, rooms of the solver, paper map,
-/// links, and names in texts. The numbers that programs write into documents are checked too. It is also a test, so
-/// `cargo xtask test` runs it.
+/// They are about dependency arrows, circles between modules, rooms of the solver, paper map, snapshots, links, and
+/// names in texts. The numbers that programs write into documents are checked too. It is also a test, so `cargo xtask
+/// test` runs it.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Write the guide's table of what goes with what, from the solver's table
@@ -31,12 +32,12 @@ type Check = fn(&Sources) -> Vec<String>;
 
 /// The checks with their names.
 const CHECKS: &[(&str, Check)] = &[
-    ("arrows", crates::check_arrows),
-    ("dependencies", crates::check_uses),
+    ("arrows", crates::check),
     ("circles", modules::check_circles),
     ("rooms", modules::check_rooms),
     ("paper map", paper_map::check),
     ("guide", guide::check),
+    ("snapshots", snapshots::check),
     ("capabilities", capabilities::check),
     ("reproduction", rc_figures::reproduction::check),
     ("references", rc_figures::documents::check),

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use rc_figures::repository;
 
 use crate::process::{program, run as run_step};
@@ -52,9 +52,6 @@ pub(crate) fn build(out: &Path, kinds: &[&[&str]]) -> Result<()> {
 fn try_wheel(python: &str, wheel: &Path) -> Result<()> {
     let python = new_environment(python, "wheel-test", &TEST_TOOLS)?;
     let path = programs(&python);
-    for compiler in ["cc", "gcc", "cargo", "rustc"] {
-        ensure!(!path.join(compiler).exists(), "{compiler} is a compiler; the wheel is to be tried without one");
-    }
     run_step(program(&python, &["-m", "pip", "install", "--quiet", "--no-index"]).arg(wheel).env("PATH", &path))?;
     run_step(program(path.join("rc"), &["--version"]).env("PATH", &path))?;
     let tests = ["-m", "pytest", "-q", "python/tests", "-p", "no:cacheprovider", "-k", "not notebook"];

@@ -1,6 +1,6 @@
-//! Dependencies between crates are the arrows of ARCHITECTURE.md, and every dependency is used.
+//! Dependencies between crates are the arrows of ARCHITECTURE.md.
 
-use rc_figures::repository::{Sources, has_extension};
+use rc_figures::repository::Sources;
 use toml::{Table, Value};
 
 /// The crates that each library may use.
@@ -36,7 +36,7 @@ const ABOVE_THE_LIBRARIES: &[(&str, &[&str])] = &[
 /// Checks the arrows of every crate.
 ///
 /// Dependencies of tests count. If only a test needs an arrow, the test belongs into `tests/`.
-pub(super) fn check_arrows(sources: &Sources) -> Vec<String> {
+pub(super) fn check(sources: &Sources) -> Vec<String> {
     let arrows = |(path, manifest): (&str, Table)| -> Vec<String> {
         let name = manifest["package"]["name"].as_str().unwrap_or_default();
         if allows(name, "").is_none() {
@@ -51,22 +51,6 @@ pub(super) fn check_arrows(sources: &Sources) -> Vec<String> {
 }
 
 const PLACES: &str = "ARCHITECTURE.md and xtask/src/tidy/crates.rs";
-
-/// Checks that the code of each crate names its dependencies, and manifests those of the workspace.
-pub(super) fn check_uses(sources: &Sources) -> Vec<String> {
-    let unused = |(path, manifest): (&str, Table)| -> Vec<String> {
-        let folder = path.trim_end_matches("Cargo.toml");
-        let code: Vec<&String> = sources
-            .iter()
-            .filter(|(file, _)| file.starts_with(folder) && has_extension(file, "rs"))
-            .map(|(_, text)| text)
-            .collect();
-        let is_unused = |name: &String| !code.iter().any(|text| text.contains(&name.replace('-', "_")));
-        let complaint = |name| format!("{path}: no code of the crate names {name}; remove the dependency");
-        dependencies(&manifest).into_iter().filter(is_unused).map(complaint).collect()
-    };
-    manifests(sources).flat_map(unused).collect()
-}
 
 /// Whether `name` may use `dependency`; `None` if `name` is not listed.
 fn allows(name: &str, dependency: &str) -> Option<bool> {
@@ -104,20 +88,14 @@ mod tests {
     #[test]
     fn forbidden_arrows_and_crates_without_arrows_are_found() {
         for (name, dependency) in [("rc-solver", "rc-core"), ("rc-solver", "rayon"), ("xtask", "rc-cli")] {
-            assert_eq!(check_arrows(&sources(name, "dependencies", dependency)), Vec::<String>::new());
+            assert_eq!(check(&sources(name, "dependencies", dependency)), Vec::<String>::new());
         }
         for (name, dependency) in
             [("rc-solver", "rc-fractal"), ("rc-theory", "xtask"), ("rc-bench", "rc-cli"), ("rc-new", "rayon")]
         {
             for section in ["dependencies", "dev-dependencies", "build-dependencies"] {
-                assert_eq!(check_arrows(&sources(name, section, dependency)).len(), 1, "{name} -> {dependency}");
+                assert_eq!(check(&sources(name, section, dependency)).len(), 1, "{name} -> {dependency}");
             }
         }
-    }
-
-    #[test]
-    fn a_dependency_that_no_code_names_is_found() {
-        assert_eq!(check_uses(&sources("rc-solver", "dependencies", "rc-core")), Vec::<String>::new());
-        assert_eq!(check_uses(&sources("rc-solver", "dependencies", "glam")).len(), 1);
     }
 }
