@@ -79,7 +79,11 @@ fn fuzz(target: fn(&[u8]), files: &[Vec<u8>], inputs: u64) {
     for seed in 0..inputs {
         let bytes = Random(seed).changed(files);
         let outcome = std::panic::catch_unwind(|| target(&bytes));
-        assert!(outcome.is_ok(), "input {seed} of the {} files", files.len());
+        assert!(
+            outcome.is_ok(),
+            "input {seed} of {inputs}: {}",
+            String::from_utf8_lossy(&bytes[..bytes.len().min(200)])
+        );
     }
 }
 
