@@ -20,7 +20,7 @@ pub(crate) struct Args {
     #[arg(long)]
     binary: bool,
     /// Another profile of cargo, for instance release, to try this command quickly
-    #[arg(long, default_value = "dist")]
+    #[arg(long, default_value = "packaged")]
     profile: String,
 }
 
