@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use rc_figures::all::{self, Archive};
-use rc_figures::{Figure, Preset, repository, reproduction};
+use rc_figures::{Figure, Preset, blocks, repository};
 
 /// Folder and size of a figure.
 #[derive(clap::Args)]
@@ -55,12 +55,12 @@ pub(crate) fn run_all(args: &AllArgs) -> Result<()> {
     all::run(args.figures.preset(), &args.figures.out, archive)
 }
 
-/// Rewrites the numbers of docs/reproduction.md from the archived run
+/// Rewrites the numbers of docs/reproduction.md and docs/benchmarks.md from the archived runs of figures
 ///
-/// `cargo xtask figures --archive` does this too.
+/// Every `--archive` of a figure does this too.
 #[derive(clap::Args)]
 pub(crate) struct ReproductionArgs {}
 
 pub(crate) fn run_reproduction(_args: &ReproductionArgs) -> Result<()> {
-    reproduction::update()
+    blocks::update()
 }

@@ -28,9 +28,8 @@ use rc_figures::repository::{self, Sources};
 /// Checks the rules of this repository that the compiler does not know.
 ///
 /// They are about dependency arrows, circles between modules, rooms of the solver, licences and versions of
-/// dependencies, paper map, guide, snapshots and house rules. The numbers of docs/reproduction.md, docs/gfmd.md,
-/// docs/challenge.md, docs/benchmarks.md and README.md are checked too. It is also a test, so `cargo xtask test` runs
-/// it.
+/// dependencies, paper map, guide, snapshots and house rules. The numbers of docs/reproduction.md, docs/benchmarks.md
+/// and README.md are checked too. It is also a test, so `cargo xtask test` runs it.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// Write the guide's table of what goes with what, from the solver's table
@@ -56,8 +55,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("guide", guide::check),
     ("capabilities", capabilities::check),
     ("packages", packages::check),
-    ("reproduction", rc_figures::reproduction::check),
-    ("references", rc_figures::documents::check),
+    ("figures", rc_figures::blocks::check),
     ("benchmark", rc_bench::bench::check_documents),
 ];
 

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 
 use crate::archive::Run;
 use crate::figure::{Figure, Preset, report, write};
-use crate::{documents, repository};
+use crate::{blocks, repository};
 
 /// Computes one figure and writes it into `folder`.
 ///
@@ -26,7 +26,7 @@ pub fn run_one<F: Figure>(preset: Preset, params: &F::Params, folder: &Path, arc
         run.save(&archived)?;
         run.save_tables(&archived)?;
         run.copy_pictures(folder)?;
-        documents::update()?;
+        blocks::update()?;
     }
     Ok(figure)
 }

@@ -3,18 +3,18 @@
 //! Pressures are restricted down to the base grid, then displacements are prolonged up again.
 
 use anyhow::{Context, Result};
-use plotters::prelude::{DrawingBackend, IntoFont, PathElement, Polygon, Rectangle, Text};
+use plotters::prelude::{DrawingBackend, PathElement, Polygon, Rectangle, Text};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{BLACK, Color, TextStyle};
+use plotters::style::{BLACK, Color};
 use rc_core::{Field, Grid, HeightField as _, Kernel, Operator as _, Symbol};
 use rc_fractal::{SpectrumParams, Surface};
-use rc_kernel::{Love, ScaleSplit, SplitParams};
-use rc_plot::{Area, FONT, Palette, Picture, PictureError, Raster};
+use rc_kernel::{ScaleSplit, SplitParams};
+use rc_plot::{Area, Palette, Picture, PictureError, Raster};
 use rc_solver::{Control, Method, SolveParams, UniformOperator, solve};
 
 use super::transfer::{displaced, prolonged, restricted};
-use crate::chart::{BLUE, GREY};
-use crate::{Figure, Preset, Rule, Table, number, paper};
+use crate::chart::{BLUE, GREY, words};
+use crate::{Preset, paper};
 
 /// Side of a map, in pixels. The following sizes are also in pixels.
 const PANEL: i32 = 224;
@@ -27,7 +27,7 @@ const TILE: usize = 8;
 
 /// Parameters of the figure.
 #[derive(Clone, Debug)]
-pub struct Params {
+pub(super) struct Params {
     /// Number of waves N.
     waves: usize,
     /// Elements per side of the finest grid and of the base grid.
@@ -48,10 +48,8 @@ struct Level {
 
 /// All levels in units of λ and E*, the finest first.
 #[derive(Clone, Debug)]
-pub struct Levels {
+pub(super) struct Levels {
     levels: Vec<Level>,
-    /// Relative rms error of the displacement over the contact.
-    error: f64,
 }
 
 /// The part of the kernel that the stencils leave to the base grid.
@@ -77,47 +75,14 @@ impl Kernel for Remainder<'_> {
     }
 }
 
-impl Figure for Levels {
-    const NAME: &'static str = "guide-levels";
-    type Params = Params;
-
-    /// Four waves on 128², 64², 32² and 16² elements (full).
-    ///
-    /// The quick preset has two levels less.
-    fn params(preset: Preset) -> Result<Params> {
+impl Params {
+    /// Four waves on 128², 64², 32² and 16² elements (full), or on two levels less (quick).
+    pub(super) fn of(preset: Preset) -> Result<Self> {
         let grids = match preset {
             Preset::Full => (128, 16),
             Preset::Quick => (64, 16),
         };
-        Ok(Params { waves: 4, grids, mean_pressure: 0.4 * paper::value("load")?, split: SplitParams::quick() })
-    }
-
-    fn compute(params: &Params) -> Result<Self> {
-        let (split, finest) = (ScaleSplit::new(params.split), Grid::square(params.grids.0)?);
-        let surface = Surface::new(&SpectrumParams::paper(params.waves, 1))?;
-        let how = SolveParams::to_tolerance(1e-10).by(Method::Uniform);
-        let solution = solve(surface.on(finest), Control::MeanPressure(params.mean_pressure), &how)?;
-        let pressures = pressures(solution.pressure(), &split, params.grids.1)?;
-        let displacements = displacements(&pressures, &split)?;
-        let exact = applied(&UniformOperator::new(finest, &Love), &pressures[0]);
-        let error = relative_error(&displacements[0], &exact, &pressures[0]);
-        let tiles = tiles(&pressures, &split)?;
-        let levels = pressures.into_iter().zip(displacements).zip(tiles);
-        let level = |((pressure, displacement), tiles)| Level { pressure, displacement, tiles };
-        Ok(Self { levels: levels.map(level).collect(), error })
-    }
-
-    fn tables(&self) -> Vec<Table> {
-        let header = ["elements_per_side", "tiles", "tiles_of_all", "mean_pressure", "max_displacement", "error"];
-        let rows = self.levels.iter().enumerate().map(|(depth, level)| {
-            let n_tiles = level.tiles.iter().filter(|is_kept| **is_kept).count();
-            let share = n_tiles as f64 / level.tiles.len() as f64;
-            let error = if depth == 0 { number(self.error) } else { String::new() };
-            let values = [share, level.pressure.mean(), level.displacement.max()].map(number);
-            let first = [level.pressure.grid().nx().to_string(), n_tiles.to_string()];
-            first.into_iter().chain(values).chain([error]).collect()
-        });
-        vec![Table::new("summary", &header, rows).rest(Rule::relative(1e-5))]
+        Ok(Self { waves: 4, grids, mean_pressure: 0.4 * paper::value("load")?, split: SplitParams::quick() })
     }
 }
 
@@ -164,13 +129,6 @@ fn applied(operator: &UniformOperator, pressure: &Field) -> Field {
     displacement
 }
 
-fn relative_error(test: &Field, exact: &Field, pressure: &Field) -> f64 {
-    let contact = || (0..pressure.values().len()).filter(|&i| pressure.values()[i] > 0.0);
-    let sum = |term: &dyn Fn(usize) -> f64| contact().map(|i| term(i).powi(2)).sum::<f64>();
-    let difference = sum(&|i| test.values()[i] - exact.values()[i]);
-    (difference / sum(&|i| exact.values()[i])).sqrt()
-}
-
 /// The tiles of each level.
 ///
 /// On the finest level they are the tiles that the contact touches. On coarser levels they are the tiles that the
@@ -203,6 +161,19 @@ fn corners(depth: usize) -> [(i32, i32); 2] {
 }
 
 impl Levels {
+    pub(super) fn compute(params: &Params) -> Result<Self> {
+        let (split, finest) = (ScaleSplit::new(params.split), Grid::square(params.grids.0)?);
+        let surface = Surface::new(&SpectrumParams::paper(params.waves, 1))?;
+        let how = SolveParams::to_tolerance(1e-10).by(Method::Uniform);
+        let solution = solve(surface.on(finest), Control::MeanPressure(params.mean_pressure), &how)?;
+        let pressures = pressures(solution.pressure(), &split, params.grids.1)?;
+        let displacements = displacements(&pressures, &split)?;
+        let tiles = tiles(&pressures, &split)?;
+        let levels = pressures.into_iter().zip(displacements).zip(tiles);
+        let level = |((pressure, displacement), tiles)| Level { pressure, displacement, tiles };
+        Ok(Self { levels: levels.map(level).collect() })
+    }
+
     fn draw_level<B: DrawingBackend>(&self, area: &Area<B>, depth: usize) -> Result<(), PictureError> {
         let level = &self.levels[depth];
         let [left, right] = corners(depth);
@@ -276,8 +247,7 @@ fn arrow<B: DrawingBackend>(area: &Area<B>, from: (i32, i32), to: (i32, i32)) ->
 }
 
 fn label<B: DrawingBackend>(area: &Area<B>, at: (i32, i32), text: &str) -> Result<(), PictureError> {
-    let style: TextStyle<'_> = (FONT, f64::from(TEXT)).into_font().color(&BLACK);
-    let style = style.pos(Pos::new(HPos::Center, VPos::Center));
+    let style = words(f64::from(TEXT), BLACK).pos(Pos::new(HPos::Center, VPos::Center));
     area.draw(&Text::new(text.to_owned(), at, style)).map_err(PictureError::new)
 }
 
@@ -294,27 +264,28 @@ impl Picture for Levels {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::figure::tests::{assert_reviewed, assert_written};
+    use rc_kernel::Love;
 
-    fn computed(split: SplitParams) -> (Levels, Params) {
-        let params = Params { split, ..Levels::params(Preset::Quick).expect("paper values") };
-        (Levels::compute(&params).expect("the contact is solved"), params)
-    }
+    use super::*;
 
     /// The sums over levels give L, with the error that the split promises.
     #[test]
     fn one_v_of_levels_is_the_operator() {
         for (split, bound) in [(SplitParams::quick(), 2e-2), (SplitParams::certified(), 5e-6)] {
-            let (figure, _) = computed(split);
-            assert!(figure.error < bound, "{split:?}: {:e} above {bound:e}", figure.error);
+            let params = Params { split, ..Params::of(Preset::Quick).expect("paper values") };
+            let figure = Levels::compute(&params).expect("the contact is solved");
+            let [pressure, displacement] = [&figure.levels[0].pressure, &figure.levels[0].displacement];
+            let exact = applied(&UniformOperator::new(pressure.grid(), &Love), pressure);
+            let error = relative_error(displacement, &exact, pressure);
+            assert!(error < bound, "{split:?}: {error:e} above {bound:e}");
         }
     }
 
-    #[test]
-    fn the_quick_levels_of_the_guide_are_as_reviewed_and_can_be_drawn() {
-        let (figure, params) = computed(SplitParams::quick());
-        assert_reviewed(&figure, &params, &["guide-levels-summary"]);
-        assert_written(&figure);
+    /// Relative rms error of the displacement over the contact.
+    fn relative_error(test: &Field, exact: &Field, pressure: &Field) -> f64 {
+        let contact = || (0..pressure.values().len()).filter(|&i| pressure.values()[i] > 0.0);
+        let sum = |term: &dyn Fn(usize) -> f64| contact().map(|i| term(i).powi(2)).sum::<f64>();
+        let difference = sum(&|i| test.values()[i] - exact.values()[i]);
+        (difference / sum(&|i| exact.values()[i])).sqrt()
     }
 }
