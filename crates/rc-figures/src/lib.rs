@@ -1,9 +1,9 @@
 //! The figures of the paper, one file each: numbers first, then a picture of them.
 //!
 //! A [`Figure`] computes itself from its parameters, and has tables and a drawing. [`run`] writes one figure, and
-//! [`all::run`] writes every figure of the paper. [`Gfmd`] and [`Challenge`] are published references, which [`run_one`]
-//! archives. [`blocks`] puts the numbers of archived figures into pages. `rc-bench` uses [`Table`], [`comparison`],
-//! [`numeric`], [`snapshot`], [`blocks`] and [`repository`] too.
+//! [`all::run`] writes every figure of the paper. [`Gfmd`] and [`Challenge`] are published references, which
+//! [`run_one`] archives. [`blocks`] puts the numbers of archived figures into pages. `rc-bench` uses [`Table`],
+//! [`comparison`], [`numeric`], [`snapshot`], [`blocks`] and [`repository`] too.
 
 pub mod all;
 pub mod archive;

@@ -13,28 +13,12 @@ use crate::{Figure, Preset, Table, paper};
 mod convergence;
 mod cutoff;
 mod heights;
+mod params;
 
 use convergence::Mesh;
 use cutoff::Cutoff;
 use heights::{Heights, gaussian};
-
-/// Parameters of all statements.
-#[derive(Clone, Debug)]
-pub struct Params {
-    /// Mean pressure σ0/E*.
-    load: f64,
-    /// Relative tolerance of the solves.
-    tolerance: f64,
-    /// Numbers of waves N for area and energy. Elements per shortest wave and the realisations follow.
-    waves: Vec<usize>,
-    elements_per_wave: usize,
-    seeds: Vec<u64>,
-    /// Number of waves N for the convergence. The elements per shortest wave of each mesh follow.
-    converged_waves: usize,
-    meshes: Vec<usize>,
-    /// Number of realisations of the heights.
-    height_seeds: u64,
-}
+use params::Params;
 
 /// Results for all statements.
 #[derive(Clone, Debug)]

@@ -48,6 +48,23 @@ mod tests {
         assert!(all.iter().all(|one| one.second.is_none_or(|second| second < one.first && second > 0.9 * one.first)));
     }
 
+    /// What docs/benchmarks.md says about located areas and the second set.
+    #[test]
+    fn the_archived_areas_are_as_published() {
+        let ours = rows(include_str!("../../../../data/runs/gfmd/gfmd-areas.csv"));
+        for (ours, published) in ours.iter().zip(all().expect("numbers")) {
+            assert_eq!(ours[0], Some(published.load));
+            let Some(second) = published.second else { continue };
+            let difference = ours[1].expect("an area") / second - 1.0;
+            let claim = match published.load {
+                5e-3..0.03 => -0.015..-0.0095,
+                0.04.. => -0.01..0.01,
+                _ => -0.04..0.0,
+            };
+            assert!(claim.contains(&difference), "{difference} at {}", published.load);
+        }
+    }
+
     /// What docs/benchmarks.md says about energy and mean gap of the archived run.
     #[test]
     fn the_archived_energy_and_gap_are_as_published() {

@@ -5,7 +5,7 @@ use rc_core::{Grid, HeightField as _};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_solver::{Control, SolveParams, solve};
 
-use super::Params;
+use super::params::Params;
 use crate::table::Rows;
 use crate::{Rule, Table};
 

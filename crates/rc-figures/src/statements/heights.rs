@@ -8,7 +8,7 @@ use anyhow::Result;
 use rc_core::Grid;
 use rc_fractal::{SpectrumParams, Surface};
 
-use super::Params;
+use super::params::Params;
 use crate::fit::Sample;
 use crate::table::Rows;
 use crate::{Rule, Table};
