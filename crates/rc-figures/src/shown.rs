@@ -18,16 +18,8 @@ enum Shown {
 
 use Shown::{Difference, Number, Text};
 
+/// The title of a column and what it shows. A column that the archived table does not have is left out.
 type Column = (&'static str, Shown);
-
-/// An archived table in a page.
-struct Block {
-    name: &'static str,
-    path: &'static str,
-    columns: &'static [Column],
-    /// First cells of the rows that are shown, or nothing for all rows.
-    rows: &'static [&'static str],
-}
 
 const SUMMARY: &[Column] = &[
     ("quantity", Text("quantity")),
@@ -39,25 +31,74 @@ const SUMMARY: &[Column] = &[
 ];
 const SURFACE: &[Column] =
     &[("quantity", Text("quantity")), ("value", Number("value", 1.0, 5)), ("unit", Text("unit"))];
+const FIG3: &[Column] = &[
+    ("quantity", Text("quantity")),
+    ("unit", Text("unit")),
+    ("the paper", Number("printed", 1.0, 4)),
+    ("here", Number("at_printed_fraction", 1.0, 4)),
+    ("difference", Difference("at_printed_fraction", "printed")),
+];
+const FIG4: &[Column] = &[
+    ("quantity", Text("quantity")),
+    ("unit", Text("unit")),
+    ("here", Number("numeric", 1.0, 5)),
+    ("Hertz in the cell", Number("periodic_hertz", 1.0, 5)),
+    ("relative difference", Number("relative_difference", 1.0, 2)),
+];
+const CUTOFF: &[Column] = &[
+    ("N", Text("waves")),
+    ("area over that of N = 8", Number("area_over_first", 1.0, 4)),
+    ("κ", Number("kappa", 1.0, 4)),
+    ("energy over that of N = 8", Number("energy_over_first", 1.0, 4)),
+    ("Δ/h_max", Number("penetration_over_h_max", 1.0, 4)),
+];
+const CONVERGENCE: &[Column] = &[
+    ("elements per λ_min", Text("elements_per_wave")),
+    ("area by counting", Number("counting_error", 1.0, 2)),
+    ("area with edges located", Number("area_error", 1.0, 2)),
+    ("rms pressure", Number("rms_pressure_error", 1.0, 2)),
+    ("Δ", Number("penetration_error", 1.0, 2)),
+];
+const MOMENTS: &[Column] = &[
+    ("quantity", Text("quantity")),
+    ("here", Number("value", 1.0, 3)),
+    ("s.d. of one", Number("standard_deviation_of_one", 1.0, 2)),
+    ("Gaussian", Number("gaussian", 1.0, 3)),
+];
+const AREAS: &[Column] = &[
+    ("σ0/E*", Number("mean_pressure_over_e_star", 1.0, 3)),
+    ("located", Number("area_fraction", 1.0, 5)),
+    ("±", Number("area_error", 1.0, 1)),
+    ("second set", Number("published_second", 1.0, 5)),
+    ("difference", Difference("area_fraction", "published_second")),
+    ("counted", Number("area_fraction_by_counting", 1.0, 5)),
+    ("first set", Number("published_first", 1.0, 5)),
+    ("its s.d.", Number("published_deviation", 1.0, 2)),
+    ("difference", Difference("area_fraction_by_counting", "published_first")),
+];
+const CHALLENGE: &[Column] = &[
+    ("side", Text("side")),
+    ("σ0 (MPa)", Number("mean_pressure_mpa", 1.0, 3)),
+    ("A/A0 (%)", Number("area_fraction", 100.0, 5)),
+    ("±", Number("area_error", 100.0, 1)),
+    ("counted (%)", Number("area_fraction_by_counting", 100.0, 5)),
+    ("mean gap (µm)", Number("mean_gap_um", 1.0, 5)),
+    ("±", Number("mean_gap_error_um", 1.0, 1)),
+    ("stiffness (MPa/µm)", Number("stiffness_mpa_per_um", 1.0, 4)),
+    ("patches", Text("patches")),
+    ("s", Number("seconds", 1.0, 3)),
+    ("MB", Number("peak_memory_megabytes", 1.0, 4)),
+];
+
+/// An archived table in a page: its name, its columns, and the first cells of its rows (none for all rows).
+type Block = (&'static str, &'static [Column], &'static [&'static str]);
 
 const BLOCKS: [Block; 15] = [
-    Block {
-        name: "fig1",
-        path: "data/runs/paper/fig1-summary.csv",
-        columns: SURFACE,
-        rows: &["contact area", "penetration", "greatest displacement", "mean displacement"],
-    },
-    Block {
-        name: "fig3",
-        path: "data/runs/paper/fig3-summary.csv",
-        columns: &[
-            ("quantity", Text("quantity")),
-            ("unit", Text("unit")),
-            ("the paper", Number("printed", 1.0, 4)),
-            ("here", Number("at_printed_fraction", 1.0, 4)),
-            ("difference", Difference("at_printed_fraction", "printed")),
-        ],
-        rows: &[
+    ("fig1-summary", SURFACE, &["contact area", "penetration", "greatest displacement", "mean displacement"]),
+    (
+        "fig3-summary",
+        FIG3,
+        &[
             "contact fraction",
             "penetration",
             "elements uniform",
@@ -65,24 +106,12 @@ const BLOCKS: [Block; 15] = [
             "elements adaptive",
             "elements adaptive with two rings",
         ],
-    },
-    Block {
-        name: "fig4",
-        path: "data/runs/paper/fig4-summary.csv",
-        columns: &[
-            ("quantity", Text("quantity")),
-            ("unit", Text("unit")),
-            ("here", Number("numeric", 1.0, 5)),
-            ("Hertz in the cell", Number("periodic_hertz", 1.0, 5)),
-            ("relative difference", Number("relative_difference", 1.0, 2)),
-        ],
-        rows: &["contact radius", "load", "peak pressure"],
-    },
-    Block {
-        name: "fig5",
-        path: "data/runs/paper/fig5-summary.csv",
-        columns: SUMMARY,
-        rows: &[
+    ),
+    ("fig4-summary", FIG4, &["contact radius", "load", "peak pressure"]),
+    (
+        "fig5-summary",
+        SUMMARY,
+        &[
             "area fraction",
             "area fraction by counting",
             "area fraction of all realisations",
@@ -93,41 +122,23 @@ const BLOCKS: [Block; 15] = [
             "scatter of the ratio of areas",
             "greatest relative difference of areas by the paper's procedure",
         ],
-    },
-    Block {
-        name: "fig6",
-        path: "data/runs/paper/fig6-summary.csv",
-        columns: &[
-            ("quantity", Text("quantity")),
-            ("N", Text("waves")),
-            ("the paper", Number("paper", 1.0, 4)),
-            ("here", Number("value", 1.0, 4)),
-            ("difference", Difference("value", "paper")),
-        ],
-        rows: &["area fraction", "contact spots"],
-    },
-    Block {
-        name: "fig7",
-        path: "data/runs/paper/fig7-summary.csv",
-        columns: &[
-            ("quantity", Text("quantity")),
-            ("N", Text("waves")),
-            ("here", Number("value", 1.0, 5)),
-            ("±", Number("standard_error", 1.0, 2)),
-        ],
-        rows: &[
+    ),
+    ("fig6-summary", SUMMARY, &["area fraction", "contact spots"]),
+    (
+        "fig7-summary",
+        SUMMARY,
+        &[
             "d log10(load) / d(penetration/h_max) of realisations",
             "R squared of averages",
             "u0",
             "gamma that u0 stands for",
             "greatest difference of penetration/h_max between surfaces",
         ],
-    },
-    Block {
-        name: "fig8",
-        path: "data/runs/paper/fig8-summary.csv",
-        columns: SUMMARY,
-        rows: &[
+    ),
+    (
+        "fig8-summary",
+        SUMMARY,
+        &[
             "area fraction",
             "integral of P",
             "erf(load/2 sqrt(Lambda)) of the fit",
@@ -136,97 +147,19 @@ const BLOCKS: [Block; 15] = [
             "first bin over peak",
             "slope from 0.01 to 0.1 of the peak stress",
         ],
-    },
-    Block {
-        name: "statements-cutoff",
-        path: "data/runs/paper/statements-cutoff.csv",
-        columns: &[
-            ("N", Text("waves")),
-            ("area over that of N = 8", Number("area_over_first", 1.0, 4)),
-            ("κ", Number("kappa", 1.0, 4)),
-            ("energy over that of N = 8", Number("energy_over_first", 1.0, 4)),
-            ("Δ/h_max", Number("penetration_over_h_max", 1.0, 4)),
-        ],
-        rows: &[],
-    },
-    Block {
-        name: "statements-convergence",
-        path: "data/runs/paper/statements-convergence.csv",
-        columns: &[
-            ("elements per λ_min", Text("elements_per_wave")),
-            ("area by counting", Number("counting_error", 1.0, 2)),
-            ("area with edges located", Number("area_error", 1.0, 2)),
-            ("rms pressure", Number("rms_pressure_error", 1.0, 2)),
-            ("Δ", Number("penetration_error", 1.0, 2)),
-        ],
-        rows: &["8", "16", "32"],
-    },
-    Block {
-        name: "statements-moments",
-        path: "data/runs/paper/statements-moments.csv",
-        columns: &[
-            ("quantity", Text("quantity")),
-            ("here", Number("value", 1.0, 3)),
-            ("s.d. of one", Number("standard_deviation_of_one", 1.0, 2)),
-            ("Gaussian", Number("gaussian", 1.0, 3)),
-        ],
-        rows: &[
-            "excess kurtosis",
-            "excess kurtosis of all phases",
-            "part beyond 2 rms heights",
-            "part beyond 3 rms heights",
-        ],
-    },
-    Block { name: "gfmd-surface", path: "data/runs/gfmd/gfmd-surface.csv", columns: SURFACE, rows: &[] },
-    Block {
-        name: "gfmd-areas",
-        path: "data/runs/gfmd/gfmd-areas.csv",
-        columns: &[
-            ("σ0/E*", Number("mean_pressure_over_e_star", 1.0, 3)),
-            ("located", Number("area_fraction", 1.0, 5)),
-            ("±", Number("area_error", 1.0, 1)),
-            ("second set", Number("published_second", 1.0, 5)),
-            ("difference", Difference("area_fraction", "published_second")),
-            ("counted", Number("area_fraction_by_counting", 1.0, 5)),
-            ("first set", Number("published_first", 1.0, 5)),
-            ("its s.d.", Number("published_deviation", 1.0, 2)),
-            ("difference", Difference("area_fraction_by_counting", "published_first")),
-        ],
-        rows: &[],
-    },
-    Block { name: "challenge-surface", path: "data/runs/challenge/challenge-surface.csv", columns: SURFACE, rows: &[] },
-    Block {
-        name: "challenge-curve",
-        path: "data/runs/challenge/challenge-curve.csv",
-        columns: &[
-            ("σ0 (MPa)", Number("mean_pressure_mpa", 1.0, 3)),
-            ("A/A0 (%)", Number("area_fraction", 100.0, 4)),
-            ("±", Number("area_error", 100.0, 1)),
-            ("counted (%)", Number("area_fraction_by_counting", 100.0, 4)),
-            ("mean gap (µm)", Number("mean_gap_um", 1.0, 4)),
-            ("±", Number("mean_gap_error_um", 1.0, 1)),
-            ("stiffness (MPa/µm)", Number("stiffness_mpa_per_um", 1.0, 4)),
-            ("patches", Text("patches")),
-        ],
-        rows: &[],
-    },
-    Block {
-        name: "challenge-large",
-        path: "data/runs/challenge/large.csv",
-        columns: &[
-            ("side", Text("side")),
-            ("σ0 (MPa)", Number("mean_pressure_mpa", 1.0, 3)),
-            ("A/A0 (%)", Number("area_fraction", 100.0, 5)),
-            ("±", Number("area_error", 100.0, 1)),
-            ("counted (%)", Number("area_fraction_by_counting", 100.0, 5)),
-            ("mean gap (µm)", Number("mean_gap_um", 1.0, 5)),
-            ("±", Number("mean_gap_error_um", 1.0, 1)),
-            ("stiffness (MPa/µm)", Number("stiffness_mpa_per_um", 1.0, 4)),
-            ("s", Number("seconds", 1.0, 3)),
-            ("MB", Number("peak_memory_megabytes", 1.0, 4)),
-        ],
-        rows: &[],
-    },
+    ),
+    ("statements-cutoff", CUTOFF, &[]),
+    ("statements-convergence", CONVERGENCE, &["8", "16", "32"]),
+    (
+        "statements-moments",
+        MOMENTS,
+        &["excess kurtosis", "excess kurtosis of all phases", "part beyond 2 rms heights", "part beyond 3 rms heights"],
+    ),
+    ("gfmd-surface", SURFACE, &[]),
+    ("gfmd-areas", AREAS, &[]),
+    ("challenge-surface", SURFACE, &[]),
+    ("challenge-curve", CHALLENGE, &[]),
+    ("challenge-large", CHALLENGE, &[]),
 ];
 
 /// The text of the block `name`; `None` if it shows no archived table.
@@ -236,21 +169,29 @@ pub(crate) fn block(name: &str, sources: &Sources) -> Option<Result<String, Stri
     if let Some(run) = name.strip_suffix("-run") {
         return Some(run_line(&format!("data/runs/{run}/run.toml"), sources));
     }
-    BLOCKS.iter().find(|block| block.name == name).map(|block| block.markdown(sources))
+    BLOCKS
+        .iter()
+        .find(|block| block.0 == name)
+        .map(|(_, columns, rows)| markdown(&path_of(name), columns, rows, sources))
 }
 
-impl Block {
-    fn markdown(&self, sources: &Sources) -> Result<String, String> {
-        let table = Csv::read(self.path, sources)?;
-        let titles: Vec<&str> = self.columns.iter().map(|column| column.0).collect();
-        let mut text = format!("| {} |\n|{}\n", titles.join(" | "), "---|".repeat(titles.len()));
-        let is_shown = |row: &[&str]| self.rows.is_empty() || self.rows.contains(&row[0]);
-        for row in table.rows.iter().filter(|row| is_shown(row)) {
-            let cells = self.columns.iter().map(|column| table.cell(row, column.1)).collect::<Result<Vec<_>, _>>()?;
-            text.extend(["| ", &cells.join(" | "), " |\n"]);
-        }
-        Ok(text)
+/// Path of an archived table.
+fn path_of(name: &str) -> String {
+    let figure = name.split('-').next().unwrap_or(name);
+    let run = if ["gfmd", "challenge"].contains(&figure) { figure } else { "paper" };
+    format!("data/runs/{run}/{name}.csv")
+}
+
+fn markdown(path: &str, columns: &[Column], rows: &[&str], sources: &Sources) -> Result<String, String> {
+    let table = Csv::read(path, sources)?;
+    let columns: Vec<Column> = columns.iter().copied().filter(|column| table.has(column.1)).collect();
+    let titles: Vec<&str> = columns.iter().map(|column| column.0).collect();
+    let mut text = format!("| {} |\n|{}\n", titles.join(" | "), "---|".repeat(titles.len()));
+    for row in table.rows.iter().filter(|row| rows.is_empty() || rows.contains(&row[0])) {
+        let cells = columns.iter().map(|column| table.cell(row, column.1)).collect::<Result<Vec<_>, _>>()?;
+        text.extend(["| ", &cells.join(" | "), " |\n"]);
     }
+    Ok(text)
 }
 
 /// An archived table.
@@ -265,6 +206,11 @@ impl<'a> Csv<'a> {
         let text = sources.get(path).ok_or_else(|| format!("{path} is missing; `--archive` makes it"))?;
         let mut rows = text.lines().map(|line| line.split(',').collect());
         Ok(Self { path, header: rows.next().unwrap_or_default(), rows: rows.collect() })
+    }
+
+    fn has(&self, shown: Shown) -> bool {
+        let (Text(name) | Number(name, ..) | Difference(_, name)) = shown;
+        self.header.contains(&name)
     }
 
     fn text<'r>(&self, row: &[&'r str], name: &str) -> Result<&'r str, String> {
@@ -329,12 +275,12 @@ mod tests {
         assert!(text("gfmd-areas").contains(difference), "{}", text("gfmd-areas"));
         assert!(text("gfmd-areas").contains("| 0.3 | 0.97 | 0.0001 |  |  |"), "{}", text("gfmd-areas"));
         assert!(
-            text("fig6").ends_with("|---|\n| area fraction | 64 | 0.0673 | 0.07 | +4.01 % |\n"),
+            text("fig6-summary").ends_with("|---|\n| area fraction | 64 | 0.0673 | 0.07 | +4.01 % |\n"),
             "{}",
-            text("fig6")
+            text("fig6-summary")
         );
         assert!(text("gfmd-run").contains("2 threads: 5.0 s"));
-        assert!(text("fig5").contains("fig5-summary.csv is missing") && block("nothing", &sources).is_none());
+        assert!(text("fig5-summary").contains("fig5-summary.csv is missing") && block("nothing", &sources).is_none());
     }
 
     /// Claims about the archived runs. Snapshots of the reduced set and `--check` allow small changes, these assertions
@@ -342,25 +288,26 @@ mod tests {
     #[test]
     fn the_archived_runs_keep_their_promises() {
         let sources = repository::read_sources(&repository::root()).expect("the repository");
-        let number = |path: &str, (first, waves): (&str, &str), column: &str| {
-            let table = Csv::read(path, &sources).expect("an archived table");
+        let number = |name: &str, (first, waves): (&str, &str), column: &str| {
+            let path = path_of(name);
+            let table = Csv::read(&path, &sources).expect("an archived table");
             let is_it = |row: &&Vec<&str>| row[0] == first && (waves.is_empty() || row[2] == waves);
             let row = table.rows.iter().find(is_it).unwrap_or_else(|| panic!("no row {first}"));
             table.number(row, column).expect("a column").expect("a number")
         };
-        let [fig5, fig8] = ["fig5", "fig8"].map(|name| format!("data/runs/paper/{name}-summary.csv"));
+        let (fig5, fig8) = ("fig5-summary", "fig8-summary");
         for (waves, name) in [("64", "area_fraction_a"), ("128", "area_fraction_b")] {
             let of = |path: &str, first: &str| number(path, (first, waves), "value");
-            assert!(of(&fig5, "R squared") > 0.9999, "N = {waves}");
-            assert!(of(&fig8, "first bin over peak") < 0.05, "N = {waves}");
-            let slope = of(&fig8, "slope from 0.01 to 0.1 of the peak stress");
+            assert!(of(fig5, "R squared") > 0.9999, "N = {waves}");
+            assert!(of(fig8, "first bin over peak") < 0.05, "N = {waves}");
+            let slope = of(fig8, "slope from 0.01 to 0.1 of the peak stress");
             assert!((slope - 1.0).abs() < 0.1, "N = {waves}: {slope}");
-            let of_fit = of(&fig8, "erf(load/2 sqrt(Lambda)) of the fit") / of(&fig8, "area fraction");
+            let of_fit = of(fig8, "erf(load/2 sqrt(Lambda)) of the fit") / of(fig8, "area fraction");
             assert!((of_fit - 1.0).abs() < 0.02, "N = {waves}: {of_fit}");
             // The two areas of the paper are those of single maps.
             let (mean, scatter) =
-                (of(&fig5, "area fraction of all realisations"), of(&fig5, "scatter of the area fraction"));
-            let printed = number(&fig5, ("area fraction", waves), "paper");
+                (of(fig5, "area fraction of all realisations"), of(fig5, "scatter of the area fraction"));
+            let printed = number(fig5, ("area fraction", waves), "paper");
             assert!((mean - printed).abs() < scatter, "N = {waves}: {mean} and {printed}, one {scatter}");
             assert!(paper::value(name).is_ok_and(|value| (value - printed).abs() < 1e-12), "{name}: {printed}");
         }
@@ -369,7 +316,7 @@ mod tests {
         assert!(limit("seconds").is_some_and(|seconds| seconds < 600.0));
         assert!(limit("peak_memory_megabytes").is_some_and(|megabytes| megabytes < 2000.0));
         // The error bars of the Challenge's curve contain the result on the reference's grid.
-        let (curve, large) = ("data/runs/challenge/challenge-curve.csv", "data/runs/challenge/large.csv");
+        let (curve, large) = ("challenge-curve", "challenge-large");
         for (column, error) in [("area_fraction", "area_error"), ("mean_gap_um", "mean_gap_error_um")] {
             let of_curve = |column| number(curve, ("2.500000e-1", ""), column);
             let difference = of_curve(column) - number(large, ("generated", ""), column);

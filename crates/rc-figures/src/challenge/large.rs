@@ -11,7 +11,7 @@ use crate::table::Rows;
 use crate::{Table, blocks, repository};
 
 /// File of the archived run.
-const FILE: &str = "data/runs/challenge/large.csv";
+const FILE: &str = "data/runs/challenge/challenge-large.csv";
 
 /// The contact under [`REFERENCE_LOAD`] on a grid of the reference's size.
 #[derive(Clone, Debug)]
