@@ -74,7 +74,7 @@ pub fn run_one<F: Figure>(preset: Preset, params: &F::Params, folder: &Path, arc
     let mut all = All { preset, folder, run: Run::start(preset) };
     let figure = all.add(params, F::compute)?;
     if archive {
-        replace(&all.run, &archive::folder(F::NAME), folder)?
+        replace(&all.run, &archive::folder(F::NAME), folder)?;
     }
     Ok(figure)
 }

@@ -247,7 +247,7 @@ impl Panel {
     }
 
     /// Width and height between the axes, in pixels, on an area of `size` without a second scale.
-    pub(crate) fn plotting_size(&self, size: (u32, u32)) -> (f64, f64) {
+    pub(crate) fn plotting_size(size: (u32, u32)) -> (f64, f64) {
         let [left, right, top, bottom] = MARGINS;
         (f64::from(size.0 - left - right - LABELS_OF_Y), f64::from(size.1 - top - bottom - LABELS))
     }

@@ -252,7 +252,7 @@ fn bodies(profile: &[Heights], half_width: f64, y: (f64, f64), size: (u32, u32))
         panel.line(run.iter().map(|at| (at.x, at.soft)), Pen::new(RED, 6));
     }
     // Ratio of µm per pixel along y to mm per pixel along x.
-    let (width, height) = panel.plotting_size(size);
+    let (width, height) = Panel::plotting_size(size);
     let exaggeration = MICRO / MILLI * (height / (y.1 - y.0)) / (width / (2.0 * half_width));
     let corner = (half_width, y.0 + 0.05 * (y.1 - y.0));
     panel.text(corner, Side::Left, format!("heights × {exaggeration:.0}"), BLACK);

@@ -200,6 +200,9 @@ impl State {
     }
 }
 
+/// Name, unit, printed value and our value of a quantity.
+type Row<'a> = (&'static str, &'static str, Option<f64>, &'a dyn Fn(&State) -> f64);
+
 impl Fig3 {
     /// The contact with this fraction, interpolated between two computed contacts.
     ///
@@ -221,7 +224,7 @@ impl Fig3 {
     fn summary(&self) -> Table {
         let at = [self.at_fraction(TWO_THIRDS), self.at_fraction(self.printed_fraction())];
         let [uniform, adaptive_uniform, adaptive] = self.printed.elements;
-        let rows: [(&str, &str, Option<f64>, &dyn Fn(&State) -> f64); 11] = [
+        let rows: [Row<'_>; 11] = [
             ("contact fraction", "1", Some(self.printed_fraction()), &|state| state.fraction),
             ("mean pressure", "E*", None, &|state| state.mean_pressure),
             ("penetration", "um", Some(MICRO * self.printed.penetration), &|state| MICRO * state.penetration),

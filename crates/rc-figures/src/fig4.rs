@@ -129,7 +129,9 @@ impl Picture for Fig4 {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        let (left, right) = area.split_horizontally(self.size().1);
+        // The space beside the axes is wider than the space above and below them, and the circle must be round.
+        let (width, height) = Panel::plotting_size((self.size().1, self.size().1));
+        let (left, right) = area.split_horizontally(self.size().1 + (height - width) as u32);
         self.map_panel().draw(&left)?;
         let sections: Vec<Panel> = self.sections.iter().map(|section| self.section_panel(section)).collect();
         draw_panels(&right, (SECTIONS.len(), 1), &sections)
@@ -211,6 +213,9 @@ fn runs(pressure: &Field) -> Vec<(usize, Range<usize>)> {
     runs
 }
 
+/// Name, unit and value of a quantity.
+type Row = (&'static str, &'static str, fn(&Contact) -> f64);
+
 impl Contact {
     /// Hertz's pressure at distance `r` from the centre, p0 √(1 - r²/a²).
     fn pressure(&self, r: f64) -> f64 {
@@ -220,7 +225,7 @@ impl Contact {
 
 impl Fig4 {
     fn summary(&self) -> Table {
-        let rows: [(&str, &str, fn(&Contact) -> f64); 4] = [
+        let rows: [Row; 4] = [
             ("contact radius", "m", |contact| contact.radius),
             ("load", "N", |contact| contact.load),
             ("peak pressure", "Pa", |contact| contact.peak),

@@ -93,7 +93,7 @@ const CHALLENGE: &[Column] = &[
 /// An archived table in a page: its name, its columns, and the first cells of its rows (none for all rows).
 type Block = (&'static str, &'static [Column], &'static [&'static str]);
 
-const BLOCKS: [Block; 15] = [
+const BLOCKS: [Block; 14] = [
     ("fig1-summary", SURFACE, &["contact area", "penetration", "greatest displacement", "mean displacement"]),
     (
         "fig3-summary",
@@ -155,7 +155,6 @@ const BLOCKS: [Block; 15] = [
         MOMENTS,
         &["excess kurtosis", "excess kurtosis of all phases", "part beyond 2 rms heights", "part beyond 3 rms heights"],
     ),
-    ("gfmd-surface", SURFACE, &[]),
     ("gfmd-areas", AREAS, &[]),
     ("challenge-surface", SURFACE, &[]),
     ("challenge-curve", CHALLENGE, &[]),

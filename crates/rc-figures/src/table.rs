@@ -74,7 +74,7 @@ impl Table {
 pub(crate) struct Rows<T> {
     items: Vec<T>,
     header: Vec<&'static str>,
-    rows: Vec<Vec<String>>,
+    cells: Vec<Vec<String>>,
     comparison: Comparison,
 }
 
@@ -117,14 +117,14 @@ impl<T> Rows<T> {
     /// One row for each of `items`.
     pub(crate) fn of(items: impl IntoIterator<Item = T>) -> Self {
         let items: Vec<T> = items.into_iter().collect();
-        let rows = items.iter().map(|_| Vec::new()).collect();
-        Self { items, header: Vec::new(), rows, comparison: Comparison::default() }
+        let cells = items.iter().map(|_| Vec::new()).collect();
+        Self { items, header: Vec::new(), cells, comparison: Comparison::default() }
     }
 
     /// The rows with one more column.
     pub(crate) fn column<C: Cell>(mut self, name: &'static str, cell: impl Fn(&T) -> C) -> Self {
         self.header.push(name);
-        self.rows.iter_mut().zip(&self.items).for_each(|(row, item)| row.push(cell(item).text()));
+        self.cells.iter_mut().zip(&self.items).for_each(|(row, item)| row.push(cell(item).text()));
         self
     }
 
@@ -136,7 +136,7 @@ impl<T> Rows<T> {
 
     /// The table of these rows.
     pub(crate) fn table(self, name: &'static str) -> Table {
-        Table { comparison: self.comparison, ..Table::new(name, &self.header, self.rows) }
+        Table { comparison: self.comparison, ..Table::new(name, &self.header, self.cells) }
     }
 }
 

@@ -103,14 +103,14 @@ impl Gfmd {
     pub(super) fn gap_and_energy_panel(&self) -> Panel {
         let (x, low) = (self.decades(), -3.5);
         let mut panel = Panel::new((LOAD, x), ("log10 (gap / h_rms), log10 (U / U_full)", (low, 1.0))).ticks(6, 9);
-        let curves: [(fn(&Point) -> f64, Style); 2] =
-            [(|point| point.mean_gap.0, LOCATED), (|point| point.energy, COUNTED)];
-        for (of, style) in curves {
+        let mut draw = |of: fn(&Point) -> f64, style: Style| {
             let points = self.points.iter().map(|point| (point.load.log10(), of(point).log10()));
             let points: Vec<_> = points.filter(|at| at.1 > low).collect();
             panel.line(points.iter().copied(), style.pen);
             panel.marks(points, style.mark);
-        }
+        };
+        draw(|point| point.mean_gap.0, LOCATED);
+        draw(|point| point.energy, COUNTED);
         let keys = [
             (Key::Mark(LOCATED.mark), "mean gap over rms height"),
             (Key::Mark(COUNTED.mark), "energy over that of full contact"),
