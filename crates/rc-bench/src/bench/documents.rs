@@ -15,7 +15,7 @@ use super::scenes::SCENES;
 use super::tables::{EQUAL_MESHES, equal_meshes, scene, scenes, short, spreads, statements, times};
 
 /// The documents that have blocks of the benchmark.
-const DOCUMENTS: [&str; 4] = ["README.md", "docs/benchmarks.md", "docs/faq.md", "docs/measurements-adaptive.md"];
+const DOCUMENTS: [&str; 4] = ["README.md", "docs/benchmarks.md", "docs/faq.md", "docs/adaptive-mesh.md"];
 /// The lines of the archived run.
 pub(super) const BENCH: &str = "data/bench/bench.csv";
 /// Description of the machine of the archived run.
