@@ -10,7 +10,6 @@ pub mod archive;
 pub mod blocks;
 pub mod challenge;
 pub mod comparison;
-pub mod guide;
 pub mod numeric;
 pub mod repository;
 pub mod snapshot;
