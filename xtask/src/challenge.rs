@@ -10,7 +10,7 @@ use crate::figures;
 
 /// Computes area, gap, stiffness and patches of the Contact-Mechanics Challenge's surface.
 ///
-/// The problem is without adhesion; docs/challenge.md explains the results.
+/// The problem is without adhesion; docs/benchmarks.md explains the results.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -30,7 +30,7 @@ pub(crate) struct Args {
     large: Option<usize>,
     /// Archives this run: tables, picture and numbers of the document.
     ///
-    /// They are in `data/runs/challenge/`, `docs/images/` and `docs/challenge.md`.
+    /// They are in `data/runs/challenge/`, `docs/images/` and `docs/benchmarks.md`.
     #[arg(long, conflicts_with_all = ["quick", "spectrum"])]
     archive: bool,
 }

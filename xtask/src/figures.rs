@@ -1,4 +1,4 @@
-//! `cargo xtask fig1` to `fig8`, `figures`, `reproduction` and `guide-figures`.
+//! `cargo xtask fig1` to `fig8`, `figures` and `reproduction`.
 //!
 //! Other commands that write tables with a picture are here too.
 
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use rc_figures::all::{self, Archive};
-use rc_figures::{Figure, Preset, guide, repository, reproduction};
+use rc_figures::{Figure, Preset, blocks, repository};
 
 /// Folder and size of a figure.
 #[derive(clap::Args)]
@@ -29,11 +29,6 @@ impl Args {
 /// Computes one figure and writes it.
 pub(crate) fn run<F: Figure>(args: &Args) -> Result<()> {
     rc_figures::run::<F>(args.preset(), &args.out)
-}
-
-/// Draws the figures of the guide.
-pub(crate) fn run_guide(args: &Args) -> Result<()> {
-    guide::write_all(args.preset(), &args.out)
 }
 
 /// Draws every figure of the paper.
@@ -60,12 +55,12 @@ pub(crate) fn run_all(args: &AllArgs) -> Result<()> {
     all::run(args.figures.preset(), &args.figures.out, archive)
 }
 
-/// Rewrites the numbers of docs/reproduction.md from the archived run
+/// Rewrites the numbers of docs/reproduction.md and docs/benchmarks.md from the archived runs of figures
 ///
-/// `cargo xtask figures --archive` does this too.
+/// Every `--archive` of a figure does this too.
 #[derive(clap::Args)]
 pub(crate) struct ReproductionArgs {}
 
 pub(crate) fn run_reproduction(_args: &ReproductionArgs) -> Result<()> {
-    reproduction::update()
+    blocks::update()
 }

@@ -56,8 +56,6 @@ enum Command {
     Figures(figures::AllArgs),
     Reproduction(figures::ReproductionArgs),
     Gfmd(gfmd::Args),
-    /// Draws the figures of the guide: mesh, kernel split, one V of levels, start of a level; also into docs/images/
-    GuideFigures(figures::Args),
     Challenge(challenge::Args),
     /// Tabulates and draws the truncation error of the image sums against shells and time
     KernelError(figures::Args),
@@ -91,7 +89,6 @@ fn main() -> anyhow::Result<()> {
         Command::Figures(args) => figures::run_all(&args),
         Command::Reproduction(args) => figures::run_reproduction(&args),
         Command::Gfmd(args) => gfmd::run(&args),
-        Command::GuideFigures(args) => figures::run_guide(&args),
         Command::Challenge(args) => challenge::run(&args),
         Command::KernelError(args) => figures::run::<KernelErrors>(&args),
         Command::Accuracy(args) => figures::run::<Accuracy>(&args),

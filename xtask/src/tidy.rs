@@ -39,8 +39,7 @@ const CHECKS: &[(&str, Check)] = &[
     ("guide", guide::check),
     ("snapshots", snapshots::check),
     ("capabilities", capabilities::check),
-    ("reproduction", rc_figures::reproduction::check),
-    ("references", rc_figures::documents::check),
+    ("figures", rc_figures::blocks::check),
     ("benchmark", rc_bench::bench::check_documents),
 ];
 

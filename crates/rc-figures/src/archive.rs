@@ -15,9 +15,9 @@ use crate::{Figure, Preset, Table, repository};
 /// File with the parameters of a run.
 pub(crate) const RUN_FILE: &str = "run.toml";
 
-/// Folder of the archived run.
-pub(crate) fn folder() -> PathBuf {
-    repository::root().join("data/runs/paper")
+/// Folder of the archived run `name`.
+pub(crate) fn folder(name: &str) -> PathBuf {
+    repository::root().join("data/runs").join(name)
 }
 
 /// A run of all figures.

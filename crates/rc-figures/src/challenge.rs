@@ -22,6 +22,7 @@ use rc_kernel::Love;
 use rc_plot::{Area, Picture, PictureError};
 use rc_solver::{ContactArea, ContactSpot, Control, Observables, Solution, SolveParams, Tolerance, solve};
 
+use crate::chart::draw_panels;
 use crate::{Figure, Preset, Table};
 
 pub use large::{Large, archive_large};
@@ -69,7 +70,6 @@ pub struct Params {
 /// Solved contacts of the surface.
 #[derive(Clone, Debug)]
 pub struct Challenge {
-    source: Source,
     side: usize,
     waves: usize,
     rms_height: f64,
@@ -189,7 +189,6 @@ impl Figure for Challenge {
             Ok(Point { load, solved, patches })
         };
         Ok(Self {
-            source: params.source.clone(),
             side: params.side,
             waves: surface.waves(),
             rms_height: moments.rms_height,
@@ -201,19 +200,6 @@ impl Figure for Challenge {
     fn tables(&self) -> Vec<Table> {
         vec![self.surface_table(), self.curve_table(), self.patches_table()]
     }
-
-    fn caption(&self) -> Option<String> {
-        let surface = match self.source {
-            Source::Generated { .. } => "generated, with other phases than the distributed one",
-            Source::File { .. } => "from the distributed coefficients",
-        };
-        Some(format!(
-            "**The Challenge's surface without adhesion**, {surface}, {}² elements, λ_s = λ/{}. (a) Contact area against mean \
-             pressure, with error bars, and Persson's theory without a fit. (b) Mean gap. (c) Contact stiffness. (d) Number of \
-             patches that are larger than the area a.\n",
-            self.side, self.waves
-        ))
-    }
 }
 
 impl Picture for Challenge {
@@ -222,7 +208,8 @@ impl Picture for Challenge {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        self.draw_panels(area).map_err(PictureError::new)
+        let panels = [self.area_panel(), self.gap_panel(), self.stiffness_panel(), self.patches_panel()];
+        draw_panels(area, (2, 2), &panels)
     }
 }
 

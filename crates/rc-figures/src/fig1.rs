@@ -7,15 +7,16 @@
 use std::f64::consts::TAU;
 
 use anyhow::Result;
-use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement, Polygon, RGBColor};
-use plotters::style::{BLACK, Color};
+use plotters::prelude::DrawingBackend;
+use plotters::style::{BLACK, RGBColor};
 use rc_core::{Field, Grid, HeightField as _};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_plot::{Area, Picture, PictureError};
 use rc_solver::{Control, Method, Solution, SolveParams, solve};
 
-use crate::chart::{Axes, BLUE, Chart, Drawn, GREY, RED, Side, dimension, write};
-use crate::{Figure, Preset, Rule, Table, number, paper};
+use crate::chart::{BLUE, GREY, Panel, Pen, RED, Side};
+use crate::table::{Rows, quantity, summary};
+use crate::{Figure, Preset, Rule, Table, paper};
 
 /// Colour of the rigid body. The colour of the half-space follows.
 const RIGID: RGBColor = RGBColor(214, 214, 214);
@@ -101,24 +102,6 @@ impl Figure for Fig1 {
     fn tables(&self) -> Vec<Table> {
         vec![self.summary(), self.section()]
     }
-
-    fn caption(&self) -> Option<String> {
-        let um = |length: f64| format!("{:.1} µm", MICRO * length);
-        Some(format!(
-            "**Fig. 1.** Section of a solved contact through the highest peak of the rigid surface, at σ0/E* = {:.2e}, \
-             where A/A0 = {:.4}. The deformed surface of the half-space touches the rigid surface where \
-             v = h − h_max + Δ (red). The displacement v has zero mean over the cell, so the undeformed mean plane is \
-             v = 0. The maximum of v is the penetration Δ = {}, under the highest peak. The mean plane of the \
-             roughness is h_max = {} above that peak, and ū = h_max − Δ = {} above the mean plane of the half-space. \
-             The lower panel shows the quarter of the cell around the peak. Heights are exaggerated by the factors in \
-             the corners.\n",
-            self.mean_pressure,
-            self.area,
-            um(self.penetration),
-            um(self.h_max),
-            um(self.h_max - self.penetration),
-        ))
-    }
 }
 
 impl Picture for Fig1 {
@@ -127,9 +110,9 @@ impl Picture for Fig1 {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        let (whole, part) = area.split_vertically(880);
-        self.draw_whole(&whole).map_err(PictureError::new)?;
-        self.draw_part(&part).map_err(PictureError::new)
+        let (upper, lower) = area.split_vertically(880);
+        self.whole(upper.dim_in_pixel()).draw(&upper)?;
+        self.part(lower.dim_in_pixel()).draw(&lower)
     }
 }
 
@@ -163,36 +146,30 @@ impl Fig1 {
     }
 
     fn summary(&self) -> Table {
-        let row = |quantity: &str, unit: &str, value: f64| vec![quantity.to_owned(), unit.to_owned(), number(value)];
         let in_contact = self.points.iter().filter(|point| point.pressure > 0.0).count();
-        let rows = [
-            row("mean pressure", "E*", self.mean_pressure),
-            row("contact area", "A0", self.area),
-            row("contact along the section", "cell side", in_contact as f64 / self.points.len() as f64),
-            row("penetration", "um", MICRO * self.penetration),
-            row("greatest displacement", "um", MICRO * self.max_displacement),
-            row("mean displacement", "um", MICRO * self.mean_displacement),
-            row("h_max", "um", MICRO * self.h_max),
-            row("mean gap", "um", MICRO * (self.h_max - self.penetration)),
+        let quantities = [
+            quantity("mean pressure", "E*", self.mean_pressure),
+            quantity("contact area", "A0", self.area),
+            quantity("contact along the section", "cell side", in_contact as f64 / self.points.len() as f64),
+            quantity("penetration", "um", MICRO * self.penetration),
+            quantity("greatest displacement", "um", MICRO * self.max_displacement),
+            quantity("mean displacement", "um", MICRO * self.mean_displacement),
+            quantity("h_max", "um", MICRO * self.h_max),
+            quantity("mean gap", "um", MICRO * (self.h_max - self.penetration)),
         ];
         // The mean is of displacements up to 17 µm, from an operator that is exact to 1e-6 of them.
-        Table::new("summary", &["quantity", "unit", "value"], rows)
-            .column("value", Rule::relative(1e-5))
-            .row("mean displacement", Rule::absolute(5e-5))
+        summary(quantities, &[]).column("value", Rule::relative(1e-5)).row("mean displacement", Rule::absolute(5e-5))
     }
 
     fn section(&self) -> Table {
-        let header = ["x_mm", "rigid_um", "displacement_um", "gap_um", "pressure_over_e_star"];
-        let rows = self.points.iter().map(|point| {
-            let gap = point.deformed - point.rigid;
-            let lengths = [point.rigid, point.deformed, gap].map(|length| number(MICRO * length));
-            let [rigid, deformed, gap] = lengths;
-            vec![number(MILLI * point.x), rigid, deformed, gap, number(point.pressure)]
-        });
-        let lengths = ["rigid_um", "displacement_um", "gap_um"].into_iter();
-        lengths
-            .fold(Table::new("section", &header, rows), |table, name| table.column(name, Rule::of_scale(1e-5)))
-            .column("pressure_over_e_star", Rule::of_scale(3e-4))
+        let length = Rule::of_scale(1e-5);
+        Rows::of(&self.points)
+            .column("x_mm", |point| MILLI * point.x)
+            .within("rigid_um", length, |point| MICRO * point.rigid)
+            .within("displacement_um", length, |point| MICRO * point.deformed)
+            .within("gap_um", length, |point| MICRO * (point.deformed - point.rigid))
+            .within("pressure_over_e_star", Rule::of_scale(3e-4), |point| point.pressure)
+            .table("section")
     }
 
     /// The profiles within `half_width` (m) of the peak.
@@ -210,43 +187,41 @@ impl Fig1 {
         heights.collect()
     }
 
-    /// Draws the whole section with planes and dimensions.
-    fn draw_whole<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
+    /// The whole section with planes and dimensions, on an area of `size` pixels.
+    fn whole(&self, size: (u32, u32)) -> Panel {
         let profile = self.profile(0.5 * self.cell);
         let top = profile.iter().map(|at| at.rigid).fold(0.0, f64::max);
         let (depth, gap) = (-MICRO * self.penetration, MICRO * (self.h_max - self.penetration));
         let half = MILLI * 0.5 * self.cell;
-        let mut chart = bodies(area, &profile, half, (1.8 * depth, 1.15 * top))?;
+        let mut panel = bodies(&profile, half, (1.8 * depth, 1.15 * top), size);
         for plane in [0.0, gap] {
-            chart.draw_series(DashedLineSeries::new([(-half, plane), (half, plane)], 12, 8, BLACK.stroke_width(2)))?;
+            panel.line([(-half, plane), (half, plane)], Pen::new(BLACK, 2).dashed(12, 8));
         }
         let (delta_x, h_max_x, gap_x) = (-0.05 * half, 0.32 * half, -0.92 * half);
-        chart
-            .draw_series([PathElement::new([(delta_x - 0.04 * half, depth), (h_max_x + 0.04 * half, depth)], BLACK)])?;
+        panel.line([(delta_x - 0.04 * half, depth), (h_max_x + 0.04 * half, depth)], Pen::new(BLACK, 1));
         for (x, ends, side, name) in [
             (delta_x, (0.0, depth), Side::Left, "Δ"),
             (h_max_x, (gap, depth), Side::Right, "h_max"),
             (gap_x, (0.0, gap), Side::Right, "h_max − Δ"),
         ] {
-            dimension(&mut chart, x, ends, BLACK)?;
-            write(&mut chart, (x, 0.5 * (ends.0 + ends.1)), side, name, BLACK)?;
+            panel.dimension(x, ends);
+            panel.text((x, 0.5 * (ends.0 + ends.1)), side, name, BLACK);
         }
-        write(&mut chart, (-0.2 * half, gap), Side::Above, "mean plane of the roughness, h = 0", BLACK)?;
-        write(&mut chart, (-0.75 * half, 0.0), Side::Below, "mean plane of the half-space, v = 0", BLACK)?;
-        write(&mut chart, (0.72 * half, 1.05 * top), Side::Below, "rigid rough surface", GREY)?;
-        write(&mut chart, (-0.72 * half, 1.4 * depth), Side::Below, "elastic half-space", BLUE)?;
-        write(&mut chart, (0.42 * half, 0.75 * depth), Side::Below, "contact", RED)
+        panel.text((-0.2 * half, gap), Side::Above, "mean plane of the roughness, h = 0", BLACK);
+        panel.text((-0.75 * half, 0.0), Side::Below, "mean plane of the half-space, v = 0", BLACK);
+        panel.text((0.72 * half, 1.05 * top), Side::Below, "rigid rough surface", GREY);
+        panel.text((-0.72 * half, 1.4 * depth), Side::Below, "elastic half-space", BLUE);
+        panel.text((0.42 * half, 0.75 * depth), Side::Below, "contact", RED);
+        panel
     }
 
-    /// Draws the surroundings of the peak.
-    fn draw_part<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
+    /// The surroundings of the peak, on an area of `size` pixels.
+    fn part(&self, size: (u32, u32)) -> Panel {
         let half = 0.5 * WINDOW * self.cell;
         let profile = self.profile(half);
         let soft = || profile.iter().map(|at| at.soft);
         let (low, high) = (soft().fold(f64::INFINITY, f64::min), soft().fold(f64::NEG_INFINITY, f64::max));
-        let y = (low - 0.3 * (high - low), high + 0.45 * (high - low));
-        bodies(area, &profile, MILLI * half, y)?;
-        Ok(())
+        bodies(&profile, MILLI * half, (low - 0.3 * (high - low), high + 0.45 * (high - low)), size)
     }
 }
 
@@ -262,35 +237,26 @@ struct Heights {
     touching: bool,
 }
 
-/// Draws both bodies and their contact, with axes and the exaggeration of heights.
-fn bodies<'a, B: DrawingBackend>(
-    area: &'a Area<B>,
-    profile: &[Heights],
-    half_width: f64,
-    y: (f64, f64),
-) -> Drawn<Chart<'a, B>, B> {
-    let axes =
-        Axes { x: (-half_width, half_width), y, x_label: "x (mm)", y_label: "height −v (µm)", n_labels: (10, 8) };
-    let mut chart = axes.on(area)?;
+/// Both bodies and their contact, with the exaggeration of heights on an area of `size` pixels.
+fn bodies(profile: &[Heights], half_width: f64, y: (f64, f64), size: (u32, u32)) -> Panel {
+    let mut panel = Panel::new(("x (mm)", (-half_width, half_width)), ("height −v (µm)", y)).ticks(10, 8);
     let line = |height: fn(&Heights) -> f64| -> Vec<(f64, f64)> {
         profile.iter().map(|at| (at.x, height(at).clamp(y.0, y.1))).collect()
     };
     for (height, edge, fill, stroke) in [(line(|at| at.rigid), y.1, RIGID, GREY), (line(|at| at.soft), y.0, SOFT, BLUE)]
     {
-        let ends = [half_width, -half_width].map(|x| (x, edge));
-        chart.draw_series([Polygon::new(height.iter().copied().chain(ends).collect::<Vec<_>>(), fill.filled())])?;
-        chart.draw_series(LineSeries::new(height, stroke.stroke_width(2)))?;
+        panel.body(height.iter().copied().chain([half_width, -half_width].map(|x| (x, edge))), fill);
+        panel.line(height, Pen::new(stroke, 2));
     }
     for run in profile.chunk_by(|a, b| a.touching == b.touching).filter(|run| run[0].touching) {
-        let line: Vec<(f64, f64)> = run.iter().map(|at| (at.x, at.soft)).collect();
-        chart.draw_series([PathElement::new(line, RED.stroke_width(6))])?;
+        panel.line(run.iter().map(|at| (at.x, at.soft)), Pen::new(RED, 6));
     }
     // Ratio of µm per pixel along y to mm per pixel along x.
-    let (width, height) = chart.plotting_area().dim_in_pixel();
-    let exaggeration = MICRO / MILLI * (f64::from(height) / (y.1 - y.0)) / (f64::from(width) / (2.0 * half_width));
+    let (width, height) = Panel::plotting_size(size);
+    let exaggeration = MICRO / MILLI * (height / (y.1 - y.0)) / (width / (2.0 * half_width));
     let corner = (half_width, y.0 + 0.05 * (y.1 - y.0));
-    write(&mut chart, corner, Side::Left, &format!("heights × {exaggeration:.0}"), BLACK)?;
-    Ok(chart)
+    panel.text(corner, Side::Left, format!("heights × {exaggeration:.0}"), BLACK);
+    panel
 }
 
 #[cfg(test)]

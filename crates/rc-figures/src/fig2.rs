@@ -4,13 +4,14 @@
 //! displacement has a mean of zero.
 
 use anyhow::Result;
-use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, PathElement};
-use plotters::style::{BLACK, Color, RGBColor};
+use plotters::prelude::DrawingBackend;
+use plotters::style::{BLACK, RGBColor};
 use rc_core::DVec2;
 use rc_kernel::{PeriodicLove, ewald_phi};
 use rc_plot::{Area, Picture, PictureError};
 
-use crate::chart::{Axes, BLUE, Drawn, GREY, RED, Side, write};
+use crate::chart::{BLUE, GREY, Panel, Pen, RED, Side, draw_panels};
+use crate::table::Rows;
 use crate::{Figure, Preset, Rule, Table, number};
 
 const COLOURS: [RGBColor; 2] = [BLUE, RED];
@@ -71,21 +72,6 @@ impl Figure for Fig2 {
     fn tables(&self) -> Vec<Table> {
         vec![self.summary(), self.lines()]
     }
-
-    fn caption(&self) -> Option<String> {
-        let means: Vec<String> = self.cases.iter().map(|case| format!("{:.1e}", case.mean_response.abs())).collect();
-        Some(format!(
-            "**Fig. 2.** (a) The self-balanced load on the elementary cell along its centre line: σ on a square of half \
-             side d, minus σ (2d/λ)² everywhere. (b) Its displacement v as a function of the distance from the square. It \
-             is the coefficient L_ij of Eq. 4 to 6, summed over all images without truncation. Both have zero mean over \
-             the cell. The mean of L is {} and {} of σ λ/E*, which is rounding. (c) The same divided by the load \
-             F = σ (2d)². Away from the square the responses agree with the point response of Eq. 3 (dashed). Beneath \
-             the square they differ. The peak of the smaller square is outside the panel, and in the table \
-             `fig2-summary.csv`.\n",
-            means.first().map_or("", String::as_str),
-            means.last().map_or("", String::as_str),
-        ))
-    }
 }
 
 impl Picture for Fig2 {
@@ -94,10 +80,7 @@ impl Picture for Fig2 {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        let panels = area.split_evenly((3, 1));
-        self.draw_load(&panels[0]).map_err(PictureError::new)?;
-        self.draw_response(&panels[1]).map_err(PictureError::new)?;
-        self.draw_per_load(&panels[2]).map_err(PictureError::new)
+        draw_panels(area, (3, 1), &[self.load_panel(), self.response_panel(), self.per_load_panel()])
     }
 }
 
@@ -154,18 +137,19 @@ fn point_response(x: f64) -> f64 {
 
 impl Fig2 {
     fn summary(&self) -> Table {
-        let header =
-            ["half_side", "load", "mean_stress", "mean_response", "response_at_centre", "at_edge", "at_half_cell"];
         let kernel = PeriodicLove::new();
-        let rows = self.cases.iter().map(|case| {
-            let d = case.half_side();
-            let at = |x: f64| kernel.coefficient(DVec2::new(x, 0.0), d);
-            [d, case.load(), case.mean_stress, case.mean_response, at(0.0), at(d), at(0.5)].map(number).into()
-        });
+        let at = |x: f64, case: &Case| kernel.coefficient(DVec2::new(x, 0.0), case.half_side());
         // Means are zero up to rounding.
-        Table::new("summary", &header, rows)
-            .column("mean_stress", Rule::absolute(1e-13))
-            .column("mean_response", Rule::absolute(1e-13))
+        let rounding = Rule::absolute(1e-13);
+        Rows::of(&self.cases)
+            .column("half_side", |case| case.half_side())
+            .column("load", |case| case.load())
+            .within("mean_stress", rounding, |case| case.mean_stress)
+            .within("mean_response", rounding, |case| case.mean_response)
+            .column("response_at_centre", |case| at(0.0, case))
+            .column("at_edge", |case| at(case.half_side(), case))
+            .column("at_half_cell", |case| at(0.5, case))
+            .table("summary")
     }
 
     fn lines(&self) -> Table {
@@ -187,60 +171,61 @@ impl Fig2 {
         (self.x.len() / 256).max(1)
     }
 
-    fn draw_load<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
-        let mut chart = axes("load / σ", (-0.2, 1.15)).on(area)?;
-        chart.draw_series([PathElement::new([(-0.5, 0.0), (0.5, 0.0)], GREY.stroke_width(1))])?;
+    fn load_panel(&self) -> Panel {
+        let mut panel = panel("load / σ", (-0.2, 1.15));
         for (case, colour) in self.cases.iter().zip(COLOURS) {
             let (d, mean) = (case.half_side(), case.load());
             let corners = [(-0.5, -mean), (-d, -mean), (-d, 1.0 - mean), (d, 1.0 - mean), (d, -mean), (0.5, -mean)];
-            chart.draw_series([PathElement::new(corners, colour.stroke_width(3))])?;
+            panel.line(corners, Pen::new(colour, 3));
         }
         for (case, (height, colour)) in self.cases.iter().zip([(0.45, COLOURS[0]), (0.8, COLOURS[1])]) {
             let text = format!("{}, outside −{:.4}", case.name(), case.load());
-            write(&mut chart, (0.13, height), Side::Right, &text, colour)?;
+            panel.text((0.13, height), Side::Right, text, colour);
         }
-        write(&mut chart, (-0.5, 1.05), Side::Right, "(a)", BLACK)
+        panel.note((-0.5, 1.05), "(a)");
+        panel
     }
 
-    fn draw_response<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
-        let mut chart = axes("v E* / (σ λ)", (-0.05, 0.25)).on(area)?;
-        chart.draw_series([PathElement::new([(-0.5, 0.0), (0.5, 0.0)], GREY.stroke_width(1))])?;
+    fn response_panel(&self) -> Panel {
+        let mut panel = panel("v E* / (σ λ)", (-0.05, 0.25));
         for ((case, colour), at) in self.cases.iter().zip(COLOURS).zip([(0.13, 0.125), (0.05, 0.03)]) {
             let line = self.x.iter().copied().zip(case.response.iter().copied()).step_by(self.stride());
-            chart.draw_series(LineSeries::new(line, colour.stroke_width(3)))?;
-            write(&mut chart, at, Side::Right, &case.name(), colour)?;
+            panel.line(line, Pen::new(colour, 3));
+            panel.text(at, Side::Right, case.name(), colour);
         }
-        write(&mut chart, (-0.5, 0.228), Side::Right, "(b)", BLACK)
+        panel.note((-0.5, 0.228), "(b)");
+        panel
     }
 
-    fn draw_per_load<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
-        let mut chart = axes("v E* λ / F", SHOWN).on(area)?;
-        chart.draw_series([PathElement::new([(-0.5, 0.0), (0.5, 0.0)], GREY.stroke_width(1))])?;
+    fn per_load_panel(&self) -> Panel {
+        let mut panel = panel("v E* λ / F", SHOWN);
         for (case, colour) in self.cases.iter().zip(COLOURS) {
             let line = self.x.iter().zip(&case.response).step_by(self.stride()).map(|(&x, &v)| (x, v / case.load()));
             for piece in line.collect::<Vec<_>>().chunk_by(|a, b| (a.1 < SHOWN.1) == (b.1 < SHOWN.1)) {
                 if piece[0].1 < SHOWN.1 {
-                    chart.draw_series(LineSeries::new(piece.iter().copied(), colour.stroke_width(3)))?;
+                    panel.line(piece.iter().copied(), Pen::new(colour, 3));
                 }
             }
         }
         for sign in [-1.0, 1.0] {
             let line = (1..=500).map(|i| 0.001 * f64::from(i)).map(|x| (sign * x, point_response(x)));
-            let shown = line.filter(|at| at.1 < SHOWN.1);
-            chart.draw_series(DashedLineSeries::new(shown, 8, 6, BLACK.stroke_width(2)))?;
+            panel.line(line.filter(|at| at.1 < SHOWN.1), Pen::new(BLACK, 2).dashed(8, 6));
         }
         for (case, (at, colour)) in self.cases.iter().zip([((0.0, 3.3), COLOURS[0]), ((0.055, 5.0), COLOURS[1])]) {
             let side = if at.0 > 0.0 { Side::Right } else { Side::Above };
-            write(&mut chart, at, side, &case.name(), colour)?;
+            panel.text(at, side, case.name(), colour);
         }
-        write(&mut chart, (0.13, 1.9), Side::Right, "dashed: point load, Eq. 3", BLACK)?;
-        write(&mut chart, (-0.5, 0.93 * SHOWN.1), Side::Right, "(c)", BLACK)
+        panel.note((0.13, 1.9), "dashed: point load, Eq. 3");
+        panel.note((-0.5, 0.93 * SHOWN.1), "(c)");
+        panel
     }
 }
 
-/// The axes of a panel along the cell.
-fn axes(y_label: &str, y: (f64, f64)) -> Axes<'_> {
-    Axes { x: (-0.5, 0.5), y, x_label: "x / λ", y_label, n_labels: (11, 7) }
+/// A panel along the cell, with a line at zero.
+fn panel(y_label: &'static str, y: (f64, f64)) -> Panel {
+    let mut panel = Panel::new(("x / λ", (-0.5, 0.5)), (y_label, y)).ticks(11, 7);
+    panel.line([(-0.5, 0.0), (0.5, 0.0)], Pen::new(GREY, 1));
+    panel
 }
 
 #[cfg(test)]

@@ -8,16 +8,17 @@
 use std::f64::consts::TAU;
 
 use anyhow::{Context, Result, ensure};
-use plotters::prelude::{Circle, DrawingBackend, EmptyElement, LineSeries, Rectangle};
-use plotters::style::{BLACK, Color, RGBColor, WHITE};
+use plotters::prelude::DrawingBackend;
+use plotters::style::{BLACK, RGBColor};
 use rc_core::{Field, Grid, HeightField as _};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_plot::{Area, Picture, PictureError};
 use rc_quadtree::paper::{Mask, MeshKind, MeshParams, count};
 use rc_solver::{Control, Method, SolveParams, Status, solve};
 
-use crate::chart::{Axes, BLUE, Chart, Drawn, GREEN, RED, Side, write};
-use crate::{Figure, Preset, Rule, Table, number, paper};
+use crate::chart::{BLUE, GREEN, Mark, Panel, Pen, RED, Side, draw_panels};
+use crate::table::Rows;
+use crate::{Figure, Preset, Rule, Table, paper};
 
 /// Kind, name in the paper, name in tables, and colour of each mesh.
 ///
@@ -90,7 +91,6 @@ pub struct Fig3 {
     states: Vec<State>,
     /// h_max above the mean plane (m).
     h_max: f64,
-    rms_height: f64,
     printed: Printed,
 }
 
@@ -119,7 +119,6 @@ impl Figure for Fig3 {
             params: params.clone(),
             states: std::iter::once(Ok(State::touch(params))).chain(partial).chain(full).collect::<Result<_>>()?,
             h_max: params.cell * (heights.max() - heights.mean()),
-            rms_height: params.cell * moments.rms_height,
             printed: Printed {
                 penetration: paper::value("fig3_penetration")?,
                 elements: [
@@ -134,10 +133,6 @@ impl Figure for Fig3 {
     fn tables(&self) -> Vec<Table> {
         vec![self.summary(), self.counts()]
     }
-
-    fn caption(&self) -> Option<String> {
-        self.at_fraction(TWO_THIRDS).map(|state| self.caption_of(&state))
-    }
 }
 
 impl Picture for Fig3 {
@@ -146,9 +141,7 @@ impl Picture for Fig3 {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        let panels = area.split_evenly((1, 2));
-        self.draw_penetration(&panels[0]).map_err(PictureError::new)?;
-        self.draw_fraction(&panels[1]).map_err(PictureError::new)
+        draw_panels(area, (1, 2), &[self.penetration_panel(), self.fraction_panel()])
     }
 }
 
@@ -207,6 +200,9 @@ impl State {
     }
 }
 
+/// Name, unit, printed value and our value of a quantity.
+type Row<'a> = (&'static str, &'static str, Option<f64>, &'a dyn Fn(&State) -> f64);
+
 impl Fig3 {
     /// The contact with this fraction, interpolated between two computed contacts.
     ///
@@ -226,92 +222,42 @@ impl Fig3 {
     }
 
     fn summary(&self) -> Table {
-        let header = ["quantity", "unit", "at_two_thirds", "at_printed_fraction", "printed"];
         let at = [self.at_fraction(TWO_THIRDS), self.at_fraction(self.printed_fraction())];
-        let row = |quantity: &str, unit: &str, printed: Option<f64>, of: &dyn Fn(&State) -> f64| {
-            let values = at.iter().map(|state| state.as_ref().map_or_else(String::new, |state| number(of(state))));
-            let cells = [quantity.to_owned(), unit.to_owned()].into_iter().chain(values);
-            cells.chain([printed.map_or_else(String::new, number)]).collect::<Vec<_>>()
-        };
         let [uniform, adaptive_uniform, adaptive] = self.printed.elements;
-        let rows = [
-            row("contact fraction", "1", Some(self.printed_fraction()), &|state| state.fraction),
-            row("mean pressure", "E*", None, &|state| state.mean_pressure),
-            row("penetration", "um", Some(MICRO * self.printed.penetration), &|state| MICRO * state.penetration),
-            row("penetration", "h_max", None, &|state| state.penetration / self.h_max),
-            row("h_max", "um", None, &|_| MICRO * self.h_max),
-            row("elements uniform", "1", Some(uniform), &|state| state.elements[0]),
-            row("elements adaptive uniform", "1", Some(adaptive_uniform), &|state| state.elements[1]),
-            row("elements adaptive", "1", Some(adaptive), &|state| state.elements[2]),
-            row("elements adaptive with two rings", "1", Some(adaptive), &|state| state.two_rings),
-            row("uniform to adaptive", "1", Some(uniform / adaptive), &|state| state.elements[0] / state.elements[2]),
-            row("adaptive uniform to adaptive", "1", Some(adaptive_uniform / adaptive), &|state| {
+        let rows: [Row<'_>; 11] = [
+            ("contact fraction", "1", Some(self.printed_fraction()), &|state| state.fraction),
+            ("mean pressure", "E*", None, &|state| state.mean_pressure),
+            ("penetration", "um", Some(MICRO * self.printed.penetration), &|state| MICRO * state.penetration),
+            ("penetration", "h_max", None, &|state| state.penetration / self.h_max),
+            ("h_max", "um", None, &|_| MICRO * self.h_max),
+            ("elements uniform", "1", Some(uniform), &|state| state.elements[0]),
+            ("elements adaptive uniform", "1", Some(adaptive_uniform), &|state| state.elements[1]),
+            ("elements adaptive", "1", Some(adaptive), &|state| state.elements[2]),
+            ("elements adaptive with two rings", "1", Some(adaptive), &|state| state.two_rings),
+            ("uniform to adaptive", "1", Some(uniform / adaptive), &|state| state.elements[0] / state.elements[2]),
+            ("adaptive uniform to adaptive", "1", Some(adaptive_uniform / adaptive), &|state| {
                 state.elements[1] / state.elements[2]
             }),
         ];
-        Table::new("summary", &header, rows).rest(Rule::relative(NOISE))
+        Rows::of(rows)
+            .column("quantity", |row| row.0.to_owned())
+            .column("unit", |row| row.1.to_owned())
+            .column("at_two_thirds", |row| at[0].as_ref().map(row.3))
+            .column("at_printed_fraction", |row| at[1].as_ref().map(row.3))
+            .column("printed", |row| row.2)
+            .table("summary")
+            .rest(Rule::relative(NOISE))
     }
 
     fn counts(&self) -> Table {
-        let [uniform, adaptive_uniform, adaptive] = MESHES.map(|mesh| mesh.2);
-        let header = [
-            "mean_pressure_over_e_star",
-            "penetration_um",
-            "penetration_over_h_max",
-            "contact_fraction",
-            uniform,
-            adaptive_uniform,
-            adaptive,
-            "adaptive_two_rings",
-        ];
-        let rows = self.states.iter().map(|state| {
-            let lengths = [MICRO * state.penetration, state.penetration / self.h_max];
-            let numbers = [state.mean_pressure].into_iter().chain(lengths).chain([state.fraction]);
-            numbers.chain(state.elements).chain([state.two_rings]).map(number).collect()
-        });
-        Table::new("counts", &header, rows).rest(Rule::of_scale(NOISE))
-    }
-
-    fn caption_of(&self, state: &State) -> String {
-        let millions = |elements: [f64; 3]| {
-            let [uniform, adaptive_uniform, adaptive] = elements.map(|n| n / MILLION);
-            format!("{adaptive:.3} : {adaptive_uniform:.3} : {uniform:.3}")
-        };
-        let Params { waves, grid, seed, cell, .. } = self.params;
-        let printed_state = self.at_fraction(self.printed_fraction());
-        let short_of_full = printed_state.map_or(0.0, |state| self.h_max - state.penetration);
-        let um = |length: f64| format!("{:.3} µm", MICRO * length);
-        format!(
-            "**Fig. 3.** Elements of the three meshes against penetration Δ (left) and contact fraction (right), for one \
-             realisation (seed {seed}) of the paper's surface: H = 0.8, rms height {rms:.0} µm, N = {waves}, λ = {mm:.0} mm, \
-             from touch to full contact. The smallest element has side λ/{grid} = λ_min/{per_wave}. The step λ_min/32 in \
-             the text is its half side, as d in Eq. 5, because 4.2 million elements are 2048². At two-thirds contact the \
-             meshes adaptive : adaptive uniform : uniform have {ours} million elements. The paper prints {theirs} \
-             (squares).\n\n\
-             The paper prints these numbers at \"Δ = 400 µm\". No contact has that Δ. Since v has zero mean and equals \
-             h − h_max + Δ in contact, full contact is reached at Δ = h_max. Here h_max is {h_max} = {h_over_rms:.2} rms \
-             heights, and 400 µm would be {printed_over_rms:.0} rms heights. If 40 µm is meant, the realisation needs an h_max \
-             of at least 40 µm = 3.1 rms heights. The adaptive uniform mesh has only the elements in contact, so the numbers \
-             give the contact fraction, 2.75e6 / 2048² = {fraction:.3}. The squares are drawn there. At that fraction Δ is \
-             within {short} of h_max, where the counts change much within a fraction of a micrometre. The fraction therefore \
-             determines the numbers, and Δ does not.\n\n\
-             In full contact no border is left, and the rule gives one element for the whole cell.\n",
-            rms = MICRO * self.rms_height,
-            mm = 1e3 * cell,
-            per_wave = grid / waves,
-            ours = millions(state.elements),
-            theirs = millions(self.printed.elements),
-            h_max = um(self.h_max),
-            h_over_rms = self.h_max / self.rms_height,
-            printed_over_rms = self.printed.penetration / self.rms_height,
-            fraction = self.printed_fraction(),
-            short = um(short_of_full),
-        )
-    }
-
-    /// Range of the axes of elements, with space for a name.
-    fn y(&self) -> (f64, f64) {
-        (0.0, 1.16 * (self.params.grid * self.params.grid) as f64 / self.unit())
+        let rows = Rows::of(&self.states)
+            .column("mean_pressure_over_e_star", |state| state.mean_pressure)
+            .column("penetration_um", |state| MICRO * state.penetration)
+            .column("penetration_over_h_max", |state| state.penetration / self.h_max)
+            .column("contact_fraction", |state| state.fraction);
+        let meshes = MESHES.iter().enumerate();
+        let rows = meshes.fold(rows, |rows, (i, mesh)| rows.column(mesh.2, |state| state.elements[i]));
+        rows.column("adaptive_two_rings", |state| state.two_rings).table("counts").rest(Rule::of_scale(NOISE))
     }
 
     /// Unit of the numbers of elements: a million, or a thousand when there are fewer.
@@ -319,19 +265,18 @@ impl Fig3 {
         if self.params.grid > 1000 { MILLION } else { 1e3 }
     }
 
-    /// Draws elements against Δ, with a scale in µm below and one in h_max above.
-    fn draw_penetration<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
+    /// Elements against Δ, with a scale in µm below and one in h_max above.
+    fn penetration_panel(&self) -> Panel {
         let h_max = MICRO * self.h_max;
-        let axes = self.axes((0.0, 1.03 * h_max), "penetration Δ (µm)");
-        let mut chart = axes.with_top(area, h_max.recip(), "Δ / h_max")?;
-        self.draw_curves(&mut chart, |state| MICRO * state.penetration)
+        let panel = self.panel(("penetration Δ (µm)", (0.0, 1.03 * h_max)), |state| MICRO * state.penetration);
+        panel.with_top(h_max.recip(), "Δ / h_max")
     }
 
-    /// Draws elements against the contact fraction, with the printed numbers.
-    fn draw_fraction<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
+    /// Elements against the contact fraction, with the printed numbers.
+    fn fraction_panel(&self) -> Panel {
         // An empty second scale gives both panels the same height.
-        let mut chart = self.axes((0.0, 1.03), "contact fraction A/A0").with_top(area, 1.0, "")?;
-        self.draw_curves(&mut chart, |state| state.fraction)?;
+        let x = ("contact fraction A/A0", (0.0, 1.03));
+        let mut panel = self.panel(x, |state| state.fraction).with_top(1.0, "");
         let uniform = self.states.last().map_or(0.0, |state| state.elements[0] / self.unit());
         let places = [
             ((0.02, uniform), Side::RightAbove),
@@ -339,32 +284,29 @@ impl Fig3 {
             ((0.3, 0.05 * uniform), Side::Right),
         ];
         for ((_, name, _, colour), (at, side)) in MESHES.into_iter().zip(places) {
-            write(&mut chart, at, side, name, colour)?;
+            panel.text(at, side, name, colour);
         }
         // The printed numbers are for 128 waves on 2048² elements.
         if self.params.grid == PAPER_GRID {
-            let printed = self.printed.elements.map(|elements| (self.printed_fraction(), elements / self.unit()));
-            chart.draw_series(printed.into_iter().zip(MESHES).map(|(at, (.., colour))| {
-                let square = |half: i32, fill: RGBColor| Rectangle::new([(-half, -half), (half, half)], fill.filled());
-                EmptyElement::at(at) + square(13, colour) + square(9, WHITE)
-            }))?;
-            write(&mut chart, (0.66, 0.88 * uniform), Side::Left, "squares: the paper's numbers", BLACK)?;
+            for (elements, (.., colour)) in self.printed.elements.into_iter().zip(MESHES) {
+                panel.marks([(self.printed_fraction(), elements / self.unit())], Mark::square(colour));
+            }
+            panel.text((0.66, 0.88 * uniform), Side::Left, "squares: the paper's numbers", BLACK);
         }
-        Ok(())
+        panel
     }
 
-    fn axes<'a>(&self, x: (f64, f64), x_label: &'a str) -> Axes<'a> {
+    /// The curves of the meshes, with space above them for a name.
+    fn panel(&self, x: (&'static str, (f64, f64)), at: impl Fn(&State) -> f64) -> Panel {
         let y_label = if self.params.grid > 1000 { "elements (millions)" } else { "elements (thousands)" };
-        Axes { x, y: self.y(), x_label, y_label, n_labels: (7, 6) }
-    }
-
-    fn draw_curves<B: DrawingBackend>(&self, chart: &mut Chart<'_, B>, x: impl Fn(&State) -> f64) -> Drawn<(), B> {
-        for (mesh, (.., colour)) in MESHES.iter().enumerate() {
-            let points: Vec<(f64, f64)> = self.states.iter().map(|s| (x(s), s.elements[mesh] / self.unit())).collect();
-            chart.draw_series(LineSeries::new(points.iter().copied(), colour.stroke_width(3)))?;
-            chart.draw_series(points.iter().map(|&at| Circle::new(at, 6, colour.filled())))?;
+        let top = 1.16 * (self.params.grid * self.params.grid) as f64 / self.unit();
+        let mut panel = Panel::new(x, (y_label, (0.0, top))).ticks(7, 6);
+        for (mesh, (.., colour)) in MESHES.into_iter().enumerate() {
+            let points = || self.states.iter().map(|state| (at(state), state.elements[mesh] / self.unit()));
+            panel.line(points(), Pen::new(colour, 3));
+            panel.marks(points(), Mark::dot(colour, 6));
         }
-        Ok(())
+        panel
     }
 }
 

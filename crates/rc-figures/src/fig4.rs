@@ -5,30 +5,25 @@
 //! half-space. The difference is 4.6 % in radius at λ = 1 cm. The comparison is therefore with Hertz's solution in the
 //! periodic cell. The infinite half-space is in the table too.
 
+use std::ops::Range;
+
 use anyhow::Result;
-use plotters::coord::types::RangedCoordf64;
-use plotters::prelude::{
-    BLACK, Cartesian2d, ChartBuilder, ChartContext, Circle, Color, DashedLineSeries, DrawingAreaErrorKind,
-    DrawingBackend, IntoFont, LineSeries, RGBColor, Rectangle,
-};
+use plotters::prelude::{BLACK, DrawingBackend, RGBColor};
 use rc_core::{DVec2, Elasticity, Field, Grid, PeriodicCell};
-use rc_plot::{Area, FONT, Picture, PictureError};
+use rc_plot::{Area, Picture, PictureError};
 use rc_solver::{Control, Method, Solution, SolveParams, solve};
 use rc_theory::hertz::{Hertz, PeriodicHertz};
 
-use crate::contact_map::{ContactMap, Run};
-use crate::{Figure, Preset, Rule, Table, number, paper};
+use crate::chart::{BLUE, Mark, Panel, Pen, RED, draw_panels};
+use crate::table::Rows;
+use crate::{Figure, Preset, Rule, Table, paper};
 
 /// Distances of the three sections from the centre, in contact radii.
 ///
 /// The sections are the rows nearest to these distances.
 const SECTIONS: [f64; 3] = [0.0, 1.0 / 3.0, 2.0 / 3.0];
-/// Colour of elements in contact. The colours of theory and of computed pressures follow.
+/// Colour of elements in contact.
 const SHADE: RGBColor = RGBColor(205, 215, 225);
-const LINE: RGBColor = RGBColor(30, 90, 160);
-const DOT: RGBColor = RGBColor(200, 60, 30);
-/// Size of the text, in pixels.
-const TEXT: f64 = 20.0;
 /// Half-width of the drawn region, in contact radii.
 const VIEW: f64 = 1.25;
 
@@ -76,8 +71,8 @@ pub struct Fig4 {
     /// Hertz's contact on the infinite half-space, at the same Δ.
     infinite: Contact,
     sections: Vec<Section>,
-    /// Runs of elements in contact.
-    runs: Vec<Run>,
+    /// Runs of elements in contact: their row, and the range of their columns.
+    runs: Vec<(usize, Range<usize>)>,
     /// Side of an element (m).
     side: f64,
     /// Index of the element under the apex, the same in x and in y.
@@ -115,7 +110,7 @@ impl Figure for Fig4 {
         Ok(Self {
             numeric: measure(params, &solution)?,
             sections: SECTIONS.map(|y| section(params, &solution, &periodic, apex, y)).into(),
-            runs: ContactMap::of(solution.pressure()).runs(),
+            runs: runs(solution.pressure()),
             periodic,
             infinite,
             side,
@@ -134,12 +129,12 @@ impl Picture for Fig4 {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        let (left, right) = area.split_horizontally(self.size().1);
-        self.draw_map(&left).map_err(PictureError::new)?;
-        for (panel, section) in right.split_evenly((SECTIONS.len(), 1)).iter().zip(&self.sections) {
-            self.draw_section(panel, section).map_err(PictureError::new)?;
-        }
-        Ok(())
+        // The space beside the axes is wider than the space above and below them, and the circle must be round.
+        let (width, height) = Panel::plotting_size((self.size().1, self.size().1));
+        let (left, right) = area.split_horizontally(self.size().1 + (height - width) as u32);
+        self.map_panel().draw(&left)?;
+        let sections: Vec<Panel> = self.sections.iter().map(|section| self.section_panel(section)).collect();
+        draw_panels(&right, (SECTIONS.len(), 1), &sections)
     }
 }
 
@@ -203,6 +198,24 @@ fn section(params: &Params, solution: &Solution<'_>, theory: &Contact, apex: usi
     Section { y, points: points.filter(|[x, _, _]| x.abs() <= VIEW * theory.radius).collect() }
 }
 
+/// Maximal runs of elements in contact, row by row.
+fn runs(pressure: &Field) -> Vec<(usize, Range<usize>)> {
+    let mut runs = Vec::new();
+    for row in 0..pressure.grid().ny() {
+        let mut from = 0;
+        for run in pressure.row(row).chunk_by(|a, b| (*a > 0.0) == (*b > 0.0)) {
+            if run[0] > 0.0 {
+                runs.push((row, from..from + run.len()));
+            }
+            from += run.len();
+        }
+    }
+    runs
+}
+
+/// Name, unit and value of a quantity.
+type Row = (&'static str, &'static str, fn(&Contact) -> f64);
+
 impl Contact {
     /// Hertz's pressure at distance `r` from the centre, p0 √(1 - r²/a²).
     fn pressure(&self, r: f64) -> f64 {
@@ -212,97 +225,70 @@ impl Contact {
 
 impl Fig4 {
     fn summary(&self) -> Table {
-        let header = ["quantity", "unit", "numeric", "periodic_hertz", "relative_difference", "infinite_hertz"];
-        let row = |quantity: &str, unit: &str, of: fn(&Contact) -> f64| {
-            let [numeric, periodic, infinite] = [&self.numeric, &self.periodic, &self.infinite].map(of);
-            let difference = number(numeric / periodic - 1.0);
-            vec![quantity.to_owned(), unit.to_owned(), number(numeric), number(periodic), difference, number(infinite)]
-        };
-        let rows = [
-            row("contact radius", "m", |contact| contact.radius),
-            row("load", "N", |contact| contact.load),
-            row("peak pressure", "Pa", |contact| contact.peak),
-            row("penetration (given)", "m", |contact| contact.penetration),
+        let rows: [Row; 4] = [
+            ("contact radius", "m", |contact| contact.radius),
+            ("load", "N", |contact| contact.load),
+            ("peak pressure", "Pa", |contact| contact.peak),
+            ("penetration (given)", "m", |contact| contact.penetration),
         ];
-        Table::new("summary", &header, rows)
-            .column("numeric", Rule::relative(1e-5))
-            .column("relative_difference", Rule::absolute(1e-5))
+        Rows::of(rows)
+            .column("quantity", |row| row.0.to_owned())
+            .column("unit", |row| row.1.to_owned())
+            .within("numeric", Rule::relative(1e-5), |row| row.2(&self.numeric))
+            .column("periodic_hertz", |row| row.2(&self.periodic))
+            .within("relative_difference", Rule::absolute(1e-5), |row| {
+                row.2(&self.numeric) / row.2(&self.periodic) - 1.0
+            })
+            .column("infinite_hertz", |row| row.2(&self.infinite))
+            .table("summary")
     }
 
     fn section_table(&self) -> Table {
-        let header = ["y_over_a", "x_over_a", "pressure_over_p0", "theory_over_p0"];
         let (a, p0) = (self.periodic.radius, self.periodic.peak);
-        let rows = self.sections.iter().flat_map(|section| {
-            let row =
-                move |&[x, numeric, theory]: &[f64; 3]| [section.y / a, x / a, numeric / p0, theory / p0].map(number);
-            section.points.iter().map(move |point| row(point).into())
-        });
+        let points =
+            self.sections.iter().flat_map(|section| section.points.iter().map(move |point| (section.y, point)));
         // Positions of zero have errors relative to the radius.
-        Table::new("sections", &header, rows)
-            .column("x_over_a", Rule::of_scale(1e-6))
-            .column("pressure_over_p0", Rule::of_scale(1e-5))
+        Rows::of(points)
+            .column("y_over_a", |(y, _)| y / a)
+            .within("x_over_a", Rule::of_scale(1e-6), |(_, point)| point[0] / a)
+            .within("pressure_over_p0", Rule::of_scale(1e-5), |(_, point)| point[1] / p0)
+            .column("theory_over_p0", |(_, point)| point[2] / p0)
+            .table("sections")
     }
 
-    /// Draws the elements in contact, the circle of theory, and the lines of the sections.
-    fn draw_map<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+    /// The elements in contact, the circle of theory, and the lines of the sections.
+    fn map_panel(&self) -> Panel {
         let a = self.periodic.radius;
-        let mut chart = axes(area, "elements in contact, circle of theory", "y / a", (-VIEW, VIEW))?;
+        let mut panel = Panel::new(("x / a", (-VIEW, VIEW)), ("y / a", (-VIEW, VIEW))).ticks(5, 5);
         let edge = |i: usize| (i as f64 - self.apex as f64 - 0.5) * self.side / a;
-        chart.draw_series(self.runs.iter().map(|run| {
-            Rectangle::new([(edge(run.from), edge(run.iy)), (edge(run.to), edge(run.iy + 1))], SHADE.filled())
-        }))?;
-        let circle = (0..=360).map(|degree| f64::from(degree).to_radians()).map(|angle| (angle.cos(), angle.sin()));
-        chart.draw_series(LineSeries::new(circle, LINE.stroke_width(2)))?;
-        for section in &self.sections {
-            let y = section.y / a;
-            chart.draw_series(DashedLineSeries::new([(-VIEW, y), (VIEW, y)], 8, 6, BLACK.stroke_width(1)))?;
+        for (row, Range { start, end }) in self.runs.iter().cloned() {
+            let (left, right, low, high) = (edge(start), edge(end), edge(row), edge(row + 1));
+            panel.body([(left, low), (right, low), (right, high), (left, high)], SHADE);
         }
-        Ok(())
+        let circle = (0..=360).map(|degree| f64::from(degree).to_radians()).map(|angle| (angle.cos(), angle.sin()));
+        panel.line(circle, Pen::new(BLUE, 2));
+        for section in &self.sections {
+            panel.line([-VIEW, VIEW].map(|x| (x, section.y / a)), Pen::new(BLACK, 1).dashed(8, 6));
+        }
+        panel.note((-VIEW, 1.15), "shaded: elements in contact, line: circle of theory");
+        panel
     }
 
-    /// Draws the pressure of one section as in the paper.
-    ///
-    /// Dots are computed values, and a line is theory.
-    fn draw_section<B: DrawingBackend>(
-        &self,
-        area: &Area<B>,
-        section: &Section,
-    ) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+    /// The pressure of one section as in the paper: computed values and the line of theory.
+    fn section_panel(&self, section: &Section) -> Panel {
         let (a, to_mpa) = (self.periodic.radius, 1e-6);
-        let title = format!("y = {:.2} a: line Hertz, dots rc", section.y / a);
-        let mut chart = axes(area, &title, "p (MPa)", (0.0, 1.1 * to_mpa * self.periodic.peak))?;
+        let top = 1.3 * to_mpa * self.periodic.peak;
+        let mut panel = Panel::new(("x / a", (-VIEW, VIEW)), ("p (MPa)", (0.0, top))).ticks(5, 5);
         let theory = (-500..=500).map(|i| VIEW * f64::from(i) / 500.0);
         let theory = theory.map(|x| (x, to_mpa * self.periodic.pressure((x * a).hypot(section.y))));
-        chart.draw_series(LineSeries::new(theory, LINE.stroke_width(2)))?;
+        panel.line(theory, Pen::new(BLUE, 2));
         // More dots would hide the line.
         let stride = section.points.len().div_ceil(64);
         let dots = section.points.iter().step_by(stride).filter(|[_, pressure, _]| *pressure > 0.0);
-        chart.draw_series(dots.map(|&[x, pressure, _]| Circle::new((x / a, to_mpa * pressure), 4, DOT.filled())))?;
-        Ok(())
+        panel.marks(dots.map(|&[x, pressure, _]| (x / a, to_mpa * pressure)), Mark::dot(RED, 4));
+        panel.note((-VIEW, 0.9 * top), format!("y = {:.2} a: line Hertz, dots rc", section.y / a));
+        panel
     }
-}
-
-/// A chart with linear axes.
-type Chart<'a, B> = ChartContext<'a, B, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-
-/// A chart over x/a with its axes.
-fn axes<'a, B: DrawingBackend>(
-    area: &'a Area<B>,
-    title: &str,
-    y_label: &str,
-    y: (f64, f64),
-) -> Result<Chart<'a, B>, DrawingAreaErrorKind<B::ErrorType>> {
-    let text = |size: f64| (FONT, size).into_font().color(&BLACK);
-    let mut chart = ChartBuilder::on(area)
-        .margin(16)
-        .caption(title, text(TEXT))
-        .x_label_area_size(52)
-        .y_label_area_size(76)
-        .build_cartesian_2d(-VIEW..VIEW, y.0..y.1)?;
-    let mut mesh = chart.configure_mesh();
-    mesh.disable_mesh().x_desc("x / a").y_desc(y_label).x_labels(5).y_labels(5);
-    mesh.label_style(text(0.85 * TEXT)).axis_desc_style(text(TEXT)).draw()?;
-    Ok(chart)
 }
 
 #[cfg(test)]

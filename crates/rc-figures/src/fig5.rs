@@ -6,17 +6,17 @@
 mod procedure;
 
 use anyhow::Result;
-use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries};
-use plotters::style::{BLACK, Color};
+use plotters::prelude::DrawingBackend;
+use plotters::style::BLACK;
 use procedure::Pair;
 use rc_plot::{Area, Picture, PictureError};
 use rc_theory::persson::Persson;
 
-use crate::chart::{Axes, Chart, Drawn, GREY, Side, write};
+use crate::chart::{GREY, Key, Mark, Panel, Pen, STYLES, Side, Style, draw_panels};
 use crate::fit::{Line, Sample};
-use crate::marks::{self, STYLES, Style, error_bars, legend, square};
 use crate::sweep::{self, Sweep};
-use crate::{Figure, Preset, Rule, Table, number, paper};
+use crate::table::{Quantity, Rows, quantity, sampled, summary};
+use crate::{Figure, Preset, Rule, Table, paper};
 
 /// Range of loads σ0/E* to which the straight line is fitted.
 const FITTED: (f64, f64) = (1e-4, 1.5e-3);
@@ -26,6 +26,8 @@ const LONGER: f64 = 4e-3;
 ///
 /// Source: Bush, Gibson, Thomas, Wear 35 (1975) 87.
 const KAPPA_ASPERITIES: f64 = 2.506_628_274_631_000_2;
+/// Name of the difference between the paper's procedure and the uniform method.
+const BY_PROCEDURE: &str = "greatest relative difference of areas by the paper's procedure";
 /// Factor from E* to the unit of the drawn loads, a thousandth of E*.
 const MILLI: f64 = 1e3;
 
@@ -102,21 +104,6 @@ impl Figure for Fig5 {
         let procedure = procedure::table(&self.procedure, &self.pairs);
         vec![self.summary(), self.curves_table(), self.sweep.table(), procedure]
     }
-
-    fn caption(&self) -> Option<String> {
-        let n = self.sweep.realisations(self.curves.first()?.waves).count();
-        let lines: Vec<String> = self.curves.iter().map(Curve::description).collect();
-        Some(format!(
-            "**Fig. 5.** (a) Contact area against mean pressure, averages of {n} realisations. Bars are the standard deviation \
-             of one realisation, where they are larger than the mark. Straight lines are fitted to the averages for σ0/E* \
-             from {:.0e} to {:.1e}: {}. Thin lines: Persson's theory, erf(√2 σ0/(E* g)) with the rms slope g, without a fit. \
-             Squares: the areas of the paper's two maps. (b) κ = (A/A0) g E*/σ0 against the load. The rms slope explains \
-             the difference between the surfaces. κ falls slowly, which a straight line hides.\n",
-            FITTED.0,
-            FITTED.1,
-            lines.join("; "),
-        ))
-    }
 }
 
 impl Picture for Fig5 {
@@ -125,9 +112,7 @@ impl Picture for Fig5 {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        let panels = area.split_evenly((1, 2));
-        self.draw_areas(&panels[0]).map_err(PictureError::new)?;
-        self.draw_kappa(&panels[1]).map_err(PictureError::new)
+        draw_panels(area, (1, 2), &[self.areas_panel(), self.kappa_panel()])
     }
 }
 
@@ -155,15 +140,34 @@ impl Curve {
         area * self.rms_slope / load
     }
 
-    fn description(&self) -> String {
-        format!(
-            "N = {}: slope {:.2}, that is κ = {:.3} over the rms slope {:.5}, R² = {:.5}",
-            self.waves,
-            self.line.slope,
-            self.line.slope * self.rms_slope,
-            self.rms_slope,
-            self.line.r_squared
-        )
+    /// The numbers of one surface beside the paper's, if these are for it.
+    fn quantities(&self, sweep: &Sweep, printed: &Printed, area: Option<f64>) -> Vec<Quantity> {
+        let load = printed.load;
+        let at = self.points.iter().find(|point| point.load.total_cmp(&load).is_eq());
+        let at_load = at.map(|point| {
+            let larger = sweep.larger_sample(self.waves, load, |state| state.area);
+            let persson = Persson::from_rms_slope(load, self.rms_slope).area_fraction();
+            let kappa = self.kappa(point.area.mean, load);
+            [
+                sampled("area fraction", "A0", point.area).paper(area),
+                sampled("area fraction by counting", "A0", point.counted).paper(area),
+                sampled("area fraction of all realisations", "A0", larger).paper(area),
+                quantity("scatter of the area fraction", "A0", larger.deviation),
+                quantity("Persson's area fraction", "A0", persson),
+                quantity("kappa at the load of the printed areas", "1", kappa)
+                    .error(self.kappa(point.area.error(), load))
+                    .paper(area.map(|area| self.kappa(area, load))),
+            ]
+        });
+        let fits = [
+            quantity("rms slope", "1", self.rms_slope),
+            quantity("slope of the line", "1", self.line.slope),
+            quantity("intercept of the line", "A0", self.line.intercept),
+            quantity("kappa of the line", "1", self.line.slope * self.rms_slope),
+            quantity("R squared", "1", self.line.r_squared).paper(area.map(|_| printed.r_squared)),
+            quantity("R squared up to 4e-3", "1", self.longer.r_squared),
+        ];
+        at_load.into_iter().flatten().chain(fits).map(|one| one.waves(self.waves)).collect()
     }
 }
 
@@ -183,174 +187,108 @@ impl Fig5 {
     }
 
     fn summary(&self) -> Table {
-        let header = ["quantity", "unit", "waves", "value", "standard_error", "paper"];
-        let rows = self.curves.iter().zip(self.printed.areas).flat_map(|(curve, printed)| {
-            let row = |quantity: &str, unit: &str, value: f64, error: Option<f64>, paper: Option<f64>| {
-                let [error, paper] = [error, paper].map(|value| value.map_or_else(String::new, number));
-                vec![quantity.to_owned(), unit.to_owned(), curve.waves.to_string(), number(value), error, paper]
-            };
-            let printed = self.full.then_some(printed);
-            let r_squared = self.full.then_some(self.printed.r_squared);
-            let load = self.printed.load;
-            let at = curve.points.iter().find(|point| point.load.total_cmp(&load).is_eq());
-            let at_load = at.into_iter().flat_map(|point| {
-                let (area, counted) = (point.area, point.counted);
-                let larger = self.sweep.larger_sample(curve.waves, load, |state| state.area);
-                let persson = Persson::from_rms_slope(load, curve.rms_slope).area_fraction();
-                [
-                    row("area fraction", "A0", area.mean, Some(area.error()), printed),
-                    row("area fraction by counting", "A0", counted.mean, Some(counted.error()), printed),
-                    row("area fraction of all realisations", "A0", larger.mean, Some(larger.error()), printed),
-                    row("scatter of the area fraction", "A0", larger.deviation, None, None),
-                    row("Persson's area fraction", "A0", persson, None, None),
-                    row(
-                        "kappa at the load of the printed areas",
-                        "1",
-                        curve.kappa(area.mean, load),
-                        Some(curve.kappa(area.error(), load)),
-                        printed.map(|area| curve.kappa(area, load)),
-                    ),
-                ]
-            });
-            let fits = [
-                row("rms slope", "1", curve.rms_slope, None, None),
-                row("slope of the line", "1", curve.line.slope, None, None),
-                row("intercept of the line", "A0", curve.line.intercept, None, None),
-                row("kappa of the line", "1", curve.line.slope * curve.rms_slope, None, None),
-                row("R squared", "1", curve.line.r_squared, None, r_squared),
-                row("R squared up to 4e-3", "1", curve.longer.r_squared, None, None),
-            ];
-            at_load.chain(fits).collect::<Vec<_>>()
-        });
-        Table::new("summary", &header, rows.chain(self.ratio_rows()))
+        let of_curves = self
+            .curves
+            .iter()
+            .zip(self.printed.areas)
+            .flat_map(|(curve, area)| curve.quantities(&self.sweep, &self.printed, self.full.then_some(area)));
+        summary(of_curves.chain(self.ratios()), &["waves", "standard_error", "paper"])
             .column("value", Rule::relative(1e-4))
             .column("standard_error", Rule::of_value(1e-4))
-            .row("greatest relative difference of areas by the paper's procedure", Rule::absolute(2e-4))
+            .row(BY_PROCEDURE, Rule::absolute(2e-4))
             .row("R squared", Rule::absolute(1e-5))
             .row("R squared up to 4e-3", Rule::absolute(1e-5))
     }
 
-    /// Rows that compare areas realisation by realisation.
+    /// Comparisons of areas realisation by realisation.
     ///
     /// They are the ratio of the areas of both surfaces, and the largest difference that the paper's procedure makes.
-    fn ratio_rows(&self) -> Vec<Vec<String>> {
+    fn ratios(&self) -> Vec<Quantity> {
         let [first, second] = &self.curves[..] else { return Vec::new() };
         let ratio = self.sweep.area_ratio(second.waves, first.waves, self.printed.load);
         let [a, b] = self.printed.areas;
-        let printed = if self.full { number(b / a) } else { String::new() };
-        let row = |quantity: &str, value: f64, error: String, paper: String| {
-            vec![quantity.to_owned(), "1".to_owned(), String::new(), number(value), error, paper]
-        };
         let procedure = self.pairs.iter().map(|pair| pair.difference().abs()).fold(0.0, f64::max);
         vec![
-            row("ratio of areas", ratio.mean, number(ratio.error()), printed),
-            row("scatter of the ratio of areas", ratio.deviation, String::new(), String::new()),
-            row(
-                "greatest relative difference of areas by the paper's procedure",
-                procedure,
-                String::new(),
-                String::new(),
-            ),
+            sampled("ratio of areas", "1", ratio).paper(self.full.then_some(b / a)),
+            quantity("scatter of the ratio of areas", "1", ratio.deviation),
+            quantity(BY_PROCEDURE, "1", procedure),
         ]
     }
 
     fn curves_table(&self) -> Table {
-        let header = [
-            "waves",
-            "mean_pressure_over_e_star",
-            "area_fraction",
-            "standard_deviation",
-            "area_fraction_by_counting",
-            "kappa",
-            "line",
-            "persson",
-        ];
-        let rows = self.curves.iter().flat_map(|curve| {
-            curve.points.iter().map(|point| {
-                let Point { load, area, counted } = *point;
-                let persson = Persson::from_rms_slope(load, curve.rms_slope).area_fraction();
-                let kappa = curve.kappa(area.mean, load);
-                let numbers = [load, area.mean, area.deviation, counted.mean, kappa, curve.line.at(load), persson];
-                [curve.waves.to_string()].into_iter().chain(numbers.map(number)).collect()
-            })
-        });
-        Table::new("curves", &header, rows)
-            .column("area_fraction", Rule::relative(2e-4))
-            .column("standard_deviation", Rule::of_scale(5e-4))
-            .column("area_fraction_by_counting", Rule::relative(5e-4))
-            .column("kappa", Rule::relative(2e-4))
-            .column("line", Rule::of_scale(1e-4))
+        let points = self.curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
+        Rows::of(points)
+            .column("waves", |(curve, _)| curve.waves)
+            .column("mean_pressure_over_e_star", |(_, point)| point.load)
+            .within("area_fraction", Rule::relative(2e-4), |(_, point)| point.area.mean)
+            .within("standard_deviation", Rule::of_scale(5e-4), |(_, point)| point.area.deviation)
+            .within("area_fraction_by_counting", Rule::relative(5e-4), |(_, point)| point.counted.mean)
+            .within("kappa", Rule::relative(2e-4), |(curve, point)| curve.kappa(point.area.mean, point.load))
+            .within("line", Rule::of_scale(1e-4), |(curve, point)| curve.line.at(point.load))
+            .column("persson", |(curve, point)| Persson::from_rms_slope(point.load, curve.rms_slope).area_fraction())
+            .table("curves")
     }
 
-    fn draw_areas<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
+    fn areas_panel(&self) -> Panel {
         let top = self.curves.iter().map(|curve| curve.line.at(1.15 * FITTED.1)).fold(0.0, f64::max);
-        let x = (0.0, 1.1 * MILLI * FITTED.1);
-        let axes = Axes { x, y: (0.0, 1.05 * top), x_label: "σ0 / E* (10⁻³)", y_label: "A / A0", n_labels: (9, 7) };
-        let mut chart = axes.on(area)?;
-        let ends = [0.0, 1.1 * FITTED.1];
+        let end = 1.1 * FITTED.1;
+        let mut panel = Panel::new(("σ0 / E* (10⁻³)", (0.0, MILLI * end)), ("A / A0", (0.0, 1.05 * top))).ticks(9, 7);
         for curve in &self.curves {
-            let theory = (0..=40).map(|i| 1.1 * FITTED.1 * f64::from(i) / 40.0);
+            let theory = (0..=40).map(|i| end * f64::from(i) / 40.0);
             let theory = theory.map(|p| (MILLI * p, Persson::from_rms_slope(p, curve.rms_slope).area_fraction()));
-            chart.draw_series(LineSeries::new(theory, curve.style.colour.stroke_width(1)))?;
-            curve.style.line(&mut chart, ends.map(|load| (MILLI * load, curve.line.at(load))))?;
-            let shown = || curve.points.iter().filter(|point| point.load <= 1.1 * FITTED.1);
+            panel.line(theory, Pen::new(curve.style.colour, 1));
+            panel.line([0.0, end].map(|load| (MILLI * load, curve.line.at(load))), curve.style.pen);
+            let shown = || curve.points.iter().filter(|point| point.load <= end);
             let at = |point: &Point| (MILLI * point.load, point.area.mean);
-            let bars = shown().map(|point| (at(point), point.area.deviation));
-            error_bars(&mut chart, bars, false, curve.style.colour)?;
-            curve.style.marks(&mut chart, shown().map(at))?;
+            panel.bars(shown().map(|point| (at(point), point.area.deviation)), curve.style.colour);
+            panel.marks(shown().map(at), curve.style.mark);
         }
         if self.full {
-            for printed in self.printed.areas {
-                square(&mut chart, (MILLI * self.printed.load, printed), 0, BLACK)?;
-            }
+            panel.marks(self.printed.areas.map(|area| (MILLI * self.printed.load, area)), Mark::square(BLACK));
         }
-        write(&mut chart, (0.0, 1.0 * top), Side::Right, "(a)", BLACK)?;
-        self.draw_legend(&mut chart, (0.12 * x.1, 0.99 * top), 0.07 * top)
+        panel.note((0.0, top), "(a)");
+        panel.legend((0.12 * MILLI * end, 0.99 * top), 0.07 * top, self.keys());
+        panel
     }
 
-    fn draw_legend<B: DrawingBackend>(&self, chart: &mut Chart<'_, B>, corner: (f64, f64), step: f64) -> Drawn<(), B> {
-        let mut lines = Vec::new();
+    /// The lines of the legend.
+    fn keys(&self) -> Vec<(Key, String)> {
+        let mut keys = Vec::new();
         for curve in &self.curves {
-            lines.push((marks::Sample::Mark(curve.style), format!("N = {}", curve.waves)));
+            keys.push((Key::Mark(curve.style.mark), format!("N = {}", curve.waves)));
             let text = format!("κ = {:.3}, R² = {:.5}", curve.line.slope * curve.rms_slope, curve.line.r_squared);
-            lines.push((marks::Sample::Line(curve.style), text));
+            keys.push((Key::Line(curve.style.pen), text));
         }
-        lines.push((marks::Sample::Thin(GREY), "Persson, κ = 1.596".to_owned()));
+        keys.push((Key::Line(Pen::new(GREY, 2)), "Persson, κ = 1.596".to_owned()));
         if self.full {
-            lines.push((marks::Sample::Square(BLACK), "the paper".to_owned()));
+            keys.push((Key::Mark(Mark::square(BLACK)), "the paper".to_owned()));
         }
-        legend(chart, corner, step, &lines)
+        keys
     }
 
-    fn draw_kappa<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
-        let ends = self.curves.iter().flat_map(|curve| {
-            let kappa =
-                |point: &Point, sign: f64| curve.kappa(point.area.mean + sign * point.area.deviation, point.load);
-            curve.points.iter().flat_map(move |point| [kappa(point, -1.0), kappa(point, 1.0)])
+    fn kappa_panel(&self) -> Panel {
+        let at = |curve: &Curve, point: &Point| (point.load.log10(), curve.kappa(point.area.mean, point.load));
+        let bar = |curve: &Curve, point: &Point| curve.kappa(point.area.deviation, point.load);
+        let points = self.curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
+        let (low, high) = points.fold((1.5, 2.6), |(low, high): (f64, f64), (curve, point)| {
+            let ((_, kappa), bar) = (at(curve, point), bar(curve, point));
+            (low.min(kappa - bar), high.max(kappa + bar))
         });
-        let (low, high) = ends.fold((1.5, 2.6), |(low, high): (f64, f64), end| (low.min(end), high.max(end)));
-        let y = (low - 0.1, high + 0.1);
-        let axes = Axes {
-            x: (-5.2, -1.8),
-            y,
-            x_label: "log10 (σ0 / E*)",
-            y_label: "κ = (A / A0) g E* / σ0",
-            n_labels: (8, 8),
-        };
-        let mut chart = axes.on(area)?;
+        let (x, y) = ((-5.2, -1.8), (low - 0.1, high + 0.1));
+        let mut panel = Panel::new(("log10 (σ0 / E*)", x), ("κ = (A / A0) g E* / σ0", y)).ticks(8, 8);
         let asperities = "asperities, vanishing load";
-        for (kappa, name, x) in [(Persson::KAPPA, "Persson, low load", -5.2), (KAPPA_ASPERITIES, asperities, -3.3)] {
-            chart.draw_series(DashedLineSeries::new([(-5.2, kappa), (-1.8, kappa)], 4, 6, GREY.stroke_width(2)))?;
-            write(&mut chart, (x, kappa), Side::RightAbove, name, GREY)?;
+        for (kappa, name, left) in [(Persson::KAPPA, "Persson, low load", x.0), (KAPPA_ASPERITIES, asperities, -3.3)] {
+            panel.line([(x.0, kappa), (x.1, kappa)], Pen::new(GREY, 2).dashed(4, 6));
+            panel.text((left, kappa), Side::RightAbove, name, GREY);
         }
         for curve in &self.curves {
-            let at = |point: &Point| (point.load.log10(), curve.kappa(point.area.mean, point.load));
-            let bars = curve.points.iter().map(|point| (at(point), curve.kappa(point.area.deviation, point.load)));
-            error_bars(&mut chart, bars, false, curve.style.colour)?;
-            curve.style.line(&mut chart, curve.points.iter().map(at))?;
-            curve.style.marks(&mut chart, curve.points.iter().map(at))?;
+            let points = || curve.points.iter().map(|point| at(curve, point));
+            panel.bars(points().zip(curve.points.iter().map(|point| bar(curve, point))), curve.style.colour);
+            panel.line(points(), curve.style.pen);
+            panel.marks(points(), curve.style.mark);
         }
-        write(&mut chart, (-5.2, y.1 - 0.04 * (y.1 - y.0)), Side::Right, "(b)", BLACK)
+        panel.note((x.0, y.1 - 0.04 * (y.1 - y.0)), "(b)");
+        panel
     }
 }
 

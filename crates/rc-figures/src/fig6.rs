@@ -13,8 +13,8 @@ use rc_fractal::{SpectrumParams, Surface};
 use rc_plot::{Area, Map, Picture, PictureError, Shade, draw_map};
 use rc_solver::{Control, SolveParams, connected_elements, solve};
 
-use crate::contact_map::ContactMap;
-use crate::{Figure, Preset, Rule, Table, number, paper};
+use crate::table::{quantity, summary};
+use crate::{Figure, Preset, Rule, Table, paper};
 
 /// Side of a map, in pixels. The space around it and the size of the text follow.
 const PANEL: u32 = 1024;
@@ -145,31 +145,22 @@ fn contact(case: &Case, params: &Params) -> Result<Contact> {
 
 impl Fig6 {
     fn summary(&self) -> Table {
-        let header = ["quantity", "unit", "waves", "value", "paper"];
-        let rows = self.contacts.iter().flat_map(|contact| {
-            let paper = contact.case.paper_area.map_or_else(String::new, number);
-            let row = |quantity: &str, unit: &str, value: f64, paper: &str| {
-                vec![
-                    quantity.to_owned(),
-                    unit.to_owned(),
-                    contact.case.waves.to_string(),
-                    number(value),
-                    paper.to_owned(),
-                ]
-            };
-            [
-                row("area fraction", "A0", contact.area, &paper),
-                row("area fraction by counting", "A0", contact.area_cells, &paper),
-                row("perimeter", "cell side", contact.perimeter, ""),
-                row("contact spots", "1", contact.n_spots as f64, ""),
-                row("rms slope", "1", contact.rms_slope, ""),
-                row("kappa", "1", contact.kappa, ""),
-                row("penetration", "h_max", contact.penetration, ""),
-                row("rms pressure", "E*", contact.rms_pressure, ""),
-            ]
+        let quantities = self.contacts.iter().flat_map(|contact| {
+            let paper = contact.case.paper_area;
+            let quantities = [
+                quantity("area fraction", "A0", contact.area).paper(paper),
+                quantity("area fraction by counting", "A0", contact.area_cells).paper(paper),
+                quantity("perimeter", "cell side", contact.perimeter),
+                quantity("contact spots", "1", contact.n_spots as f64),
+                quantity("rms slope", "1", contact.rms_slope),
+                quantity("kappa", "1", contact.kappa),
+                quantity("penetration", "h_max", contact.penetration),
+                quantity("rms pressure", "E*", contact.rms_pressure),
+            ];
+            quantities.map(|one| one.waves(contact.case.waves))
         });
         // A spot of one element may appear or vanish.
-        Table::new("summary", &header, rows)
+        summary(quantities, &["waves", "paper"])
             .column("value", Rule::relative(1e-4))
             .row("contact spots", Rule::count(0.0))
     }
@@ -181,7 +172,7 @@ impl Fig6 {
         let columns: Vec<String> = (0..N_BLOCKS).map(|column| format!("x{column}")).collect();
         let header: Vec<&str> = ["waves"].into_iter().chain(columns.iter().map(String::as_str)).collect();
         let rows = self.contacts.iter().flat_map(|contact| {
-            let fractions = ContactMap::of(&contact.pressure).block_fractions(N_BLOCKS);
+            let fractions = block_fractions(&contact.pressure, N_BLOCKS);
             let row = |fractions: &[f64]| {
                 let cells = fractions.iter().map(|fraction| format!("{fraction:.4}"));
                 [contact.case.waves.to_string()].into_iter().chain(cells).collect::<Vec<_>>()
@@ -193,10 +184,31 @@ impl Fig6 {
     }
 }
 
+/// Fraction in contact of each of `m` × `m` equal blocks of a square grid, row by row.
+///
+/// `m` must divide the side of the grid.
+fn block_fractions(pressure: &Field, m: usize) -> Vec<f64> {
+    let block = pressure.grid().nx() / m;
+    let mut fractions = vec![0.0; m * m];
+    for (i, _) in pressure.values().iter().enumerate().filter(|(_, p)| **p > 0.0) {
+        let (row, column) = (i / pressure.grid().nx(), i % pressure.grid().nx());
+        fractions[(row / block) * m + column / block] += ((block * block) as f64).recip();
+    }
+    fractions
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::figure::tests::{assert_reviewed, assert_written};
+
+    #[test]
+    fn blocks_keep_the_area() {
+        let rows = ["##..", "##.#", "....", "#..."];
+        let values = rows.iter().flat_map(|row| row.bytes()).map(|byte| if byte == b'#' { 1.0 } else { 0.0 });
+        let map = Field::new(Grid::square(4).expect("small grid"), values.collect()).expect("square map");
+        assert_eq!(block_fractions(&map, 2), vec![1.0, 0.25, 0.25, 0.0]);
+    }
 
     #[test]
     fn quick_figure_6_is_as_reviewed_and_can_be_drawn() {

@@ -6,16 +6,15 @@
 //! gap ū = h_max - Δ. It is fitted to each realisation and then averaged.
 
 use anyhow::Result;
-use plotters::prelude::{DashedLineSeries, DrawingBackend, LineSeries, RGBColor, Rectangle};
-use plotters::style::{BLACK, Color};
+use plotters::prelude::{DrawingBackend, RGBColor};
 use rc_plot::{Area, Picture, PictureError};
 use rc_theory::persson_gap::SelfAffineBand;
 
-use crate::chart::{Axes, Drawn, GREY, Side, write};
+use crate::chart::{GREY, Key, Panel, Pen, STYLES, Style};
 use crate::fit::{Line, Sample};
-use crate::marks::{self, STYLES, Style, error_bars, legend};
 use crate::sweep::{self, State, Sweep};
-use crate::{Figure, Preset, Rule, Table, number, paper};
+use crate::table::{Quantity, Rows, quantity, sampled, summary};
+use crate::{Figure, Preset, Rule, Table, paper};
 
 /// Range of Δ/h_max in which log σ0 is linear.
 ///
@@ -23,6 +22,7 @@ use crate::{Figure, Preset, Rule, Table, number, paper};
 const WINDOW: (f64, f64) = (0.28, 0.9);
 /// Values of Persson's γ that the literature fits to simulations.
 const GAMMAS: [f64; 2] = [0.40, 0.45];
+const BETWEEN_SURFACES: &str = "greatest difference of penetration/h_max between surfaces";
 /// Colour of the window. The colour of single realisations follows.
 const SHADE: RGBColor = RGBColor(240, 240, 240);
 const PALE: f64 = 0.25;
@@ -98,34 +98,6 @@ impl Figure for Fig7 {
     fn tables(&self) -> Vec<Table> {
         vec![self.summary(), self.curves_table(), self.fits_table()]
     }
-
-    fn caption(&self) -> Option<String> {
-        let first = self.curves.first()?;
-        let lengths: Vec<String> = self
-            .curves
-            .iter()
-            .map(|curve| {
-                let u0 = curve.decay_lengths();
-                format!("N = {}: {:.3} ± {:.3}", curve.waves, u0.mean, u0.error())
-            })
-            .collect();
-        let theory = GAMMAS.map(|gamma| format!("{:.3} (γ = {gamma:.2})", gamma * first.decay_length));
-        Some(format!(
-            "**Fig. 7.** Mean pressure against penetration. Marks: averages of Δ/h_max over {n} realisations at the same load, \
-             each with its own h_max. Bars: standard deviation of one realisation. Pale lines: realisations. Straight \
-             lines are fitted to the averages where {low} ≤ Δ/h_max ≤ {high} (shaded), because log10 σ0 is linear there. Below, \
-             it falls faster, because a finite surface has a highest asperity. Above, it rises faster, towards full \
-             contact. Decay length u0/h_rms of σ0 ∝ exp(−ū/u0), fitted to each realisation and averaged (± standard \
-             error): {lengths}. Persson's theory: {theory}. Grey: its line for γ = {gamma:.2}, with its own prefactor and \
-             the mean h_max.\n",
-            n = first.fits.len(),
-            low = WINDOW.0,
-            high = WINDOW.1,
-            lengths = lengths.join("; "),
-            theory = theory.join(", "),
-            gamma = GAMMAS[1],
-        ))
-    }
 }
 
 impl Picture for Fig7 {
@@ -134,7 +106,7 @@ impl Picture for Fig7 {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        self.draw_curves(area).map_err(PictureError::new)
+        self.panel().draw(area)
     }
 }
 
@@ -187,6 +159,25 @@ impl Curve {
         let mean_gap = self.h_max().mean * (1.0 - penetration);
         self.prefactor.log10() - mean_gap / (gamma * self.decay_length * std::f64::consts::LN_10)
     }
+
+    fn quantities(&self) -> Vec<Quantity> {
+        let slopes = Sample::of(&self.fits.iter().map(|fit| fit.line.slope).collect::<Vec<_>>());
+        let lowest = self.fits.iter().map(|fit| fit.line.r_squared).fold(1.0, f64::min);
+        let u0 = self.decay_lengths();
+        let persson = GAMMAS.map(|gamma| {
+            quantity(format!("Persson's u0 for gamma {gamma:.2}"), "rms height", gamma * self.decay_length)
+        });
+        let of_fits = [
+            sampled("h_max", "rms height", self.h_max()),
+            sampled("d log10(load) / d(penetration/h_max) of realisations", "1", slopes),
+            quantity("d log10(load) / d(penetration/h_max) of averages", "1", self.average.slope),
+            quantity("R squared of averages", "1", self.average.r_squared),
+            quantity("lowest R squared of realisations", "1", lowest),
+            sampled("u0", "rms height", u0),
+        ];
+        let gamma = quantity("gamma that u0 stands for", "1", u0.mean / self.decay_length);
+        of_fits.into_iter().chain(persson).chain([gamma]).map(|one| one.waves(self.waves)).collect()
+    }
 }
 
 impl Fig7 {
@@ -204,119 +195,72 @@ impl Fig7 {
     }
 
     fn summary(&self) -> Table {
-        let header = ["quantity", "unit", "waves", "value", "standard_error"];
-        let row = |quantity: &str, unit: &str, waves: &str, value: f64, error: Option<f64>| {
-            let error = error.map_or_else(String::new, number);
-            vec![quantity.to_owned(), unit.to_owned(), waves.to_owned(), number(value), error]
-        };
-        let rows = self.curves.iter().flat_map(|curve| {
-            let waves = curve.waves.to_string();
-            let slopes = Sample::of(&curve.fits.iter().map(|fit| fit.line.slope).collect::<Vec<_>>());
-            let lowest = curve.fits.iter().map(|fit| fit.line.r_squared).fold(1.0, f64::min);
-            let sample = |quantity: &str, unit: &str, sample: Sample| {
-                row(quantity, unit, &waves, sample.mean, Some(sample.error()))
-            };
-            let mut rows = vec![
-                sample("h_max", "rms height", curve.h_max()),
-                sample("d log10(load) / d(penetration/h_max) of realisations", "1", slopes),
-                row("d log10(load) / d(penetration/h_max) of averages", "1", &waves, curve.average.slope, None),
-                row("R squared of averages", "1", &waves, curve.average.r_squared, None),
-                row("lowest R squared of realisations", "1", &waves, lowest, None),
-                sample("u0", "rms height", curve.decay_lengths()),
-            ];
-            for gamma in GAMMAS {
-                let quantity = format!("Persson's u0 for gamma {gamma:.2}");
-                rows.push(row(&quantity, "rms height", &waves, gamma * curve.decay_length, None));
-            }
-            rows.push(row(
-                "gamma that u0 stands for",
-                "1",
-                &waves,
-                curve.decay_lengths().mean / curve.decay_length,
-                None,
-            ));
-            rows
-        });
-        let difference =
-            row("greatest difference of penetration/h_max between surfaces", "1", "", self.difference(), None);
-        Table::new("summary", &header, rows.chain([difference]))
+        let difference = quantity(BETWEEN_SURFACES, "1", self.difference());
+        let quantities = self.curves.iter().flat_map(Curve::quantities).chain([difference]);
+        summary(quantities, &["waves", "standard_error"])
             .column("value", Rule::relative(1e-4))
             .column("standard_error", Rule::of_value(1e-4))
-            .row("greatest difference of penetration/h_max between surfaces", Rule::absolute(2e-5))
+            .row(BETWEEN_SURFACES, Rule::absolute(2e-5))
     }
 
     fn curves_table(&self) -> Table {
-        let header = [
-            "waves",
-            "mean_pressure_over_e_star",
-            "penetration_over_h_max",
-            "standard_deviation",
-            "mean_gap_over_rms_height",
-            "gap_standard_deviation",
-            "log10_of_line",
-        ];
-        let rows = self.curves.iter().flat_map(|curve| {
-            curve.points.iter().map(|point| {
-                let Point { load, penetration, mean_gap } = *point;
-                let line = curve.average.at(penetration.mean);
-                let numbers = [load, penetration.mean, penetration.deviation, mean_gap.mean, mean_gap.deviation, line]
-                    .map(number);
-                [curve.waves.to_string()].into_iter().chain(numbers).collect()
-            })
-        });
-        Table::new("curves", &header, rows)
-            .column("penetration_over_h_max", Rule::of_scale(1e-5))
-            .column("standard_deviation", Rule::of_scale(1e-4))
-            .column("mean_gap_over_rms_height", Rule::of_scale(1e-5))
-            .column("gap_standard_deviation", Rule::of_scale(1e-4))
-            .column("log10_of_line", Rule::relative(1e-5))
+        let points = self.curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)));
+        let (length, deviation) = (Rule::of_scale(1e-5), Rule::of_scale(1e-4));
+        Rows::of(points)
+            .column("waves", |(curve, _)| curve.waves)
+            .column("mean_pressure_over_e_star", |(_, point)| point.load)
+            .within("penetration_over_h_max", length, |(_, point)| point.penetration.mean)
+            .within("standard_deviation", deviation, |(_, point)| point.penetration.deviation)
+            .within("mean_gap_over_rms_height", length, |(_, point)| point.mean_gap.mean)
+            .within("gap_standard_deviation", deviation, |(_, point)| point.mean_gap.deviation)
+            .within("log10_of_line", Rule::relative(1e-5), |(curve, point)| curve.average.at(point.penetration.mean))
+            .table("curves")
     }
 
     fn fits_table(&self) -> Table {
-        let header = ["waves", "seed", "h_max_over_rms_height", "slope", "r_squared", "u0_over_rms_height"];
-        let rows = self.curves.iter().flat_map(|curve| {
-            curve.fits.iter().map(|fit| {
-                let numbers = [fit.h_max, fit.line.slope, fit.line.r_squared, fit.decay_length()].map(number);
-                [curve.waves.to_string(), fit.seed.to_string()].into_iter().chain(numbers).collect()
-            })
-        });
-        Table::new("fits", &header, rows).rest(Rule::relative(1e-4))
+        Rows::of(self.curves.iter().flat_map(|curve| curve.fits.iter().map(move |fit| (curve, fit))))
+            .column("waves", |(curve, _)| curve.waves)
+            .column("seed", |(_, fit)| fit.seed)
+            .column("h_max_over_rms_height", |(_, fit)| fit.h_max)
+            .column("slope", |(_, fit)| fit.line.slope)
+            .column("r_squared", |(_, fit)| fit.line.r_squared)
+            .column("u0_over_rms_height", |(_, fit)| fit.decay_length())
+            .table("fits")
+            .rest(Rule::relative(1e-4))
     }
 
-    fn draw_curves<B: DrawingBackend>(&self, area: &Area<B>) -> Drawn<(), B> {
+    fn panel(&self) -> Panel {
         const Y: (f64, f64) = (-5.2, -1.8);
-        let axes = Axes { x: (0.0, 1.0), y: Y, x_label: "Δ / h_max", y_label: "log10 (σ0 / E*)", n_labels: (11, 8) };
-        let mut chart = axes.on(area)?;
-        chart.draw_series([Rectangle::new([(WINDOW.0, Y.0), (WINDOW.1, Y.1)], SHADE.filled())])?;
+        let mut panel = Panel::new(("Δ / h_max", (0.0, 1.0)), ("log10 (σ0 / E*)", Y)).ticks(11, 8);
+        panel.body([(WINDOW.0, Y.0), (WINDOW.1, Y.0), (WINDOW.1, Y.1), (WINDOW.0, Y.1)], SHADE);
         for (curve, style) in self.curves.iter().zip(STYLES) {
             for states in self.sweep.realisations(curve.waves) {
                 let line = states.iter().map(|state| (state.penetration, state.load.log10()));
-                chart.draw_series(LineSeries::new(line, style.colour.mix(PALE).stroke_width(1)))?;
+                panel.line(line, Pen::new(style.colour, 1).pale(PALE));
             }
         }
+        let persson = Pen::new(GREY, 3).dashed(4, 6);
         if let Some(curve) = self.curves.first() {
-            let ends = [0.15, 1.0].map(|x| (x, curve.persson(GAMMAS[1], x)));
-            chart.draw_series(DashedLineSeries::new(ends, 4, 6, GREY.stroke_width(3)))?;
+            panel.line([0.15, 1.0].map(|x| (x, curve.persson(GAMMAS[1], x))), persson);
         }
-        let mut lines = Vec::new();
+        let mut keys = Vec::new();
         for curve in &self.curves {
-            let ends = [WINDOW.0 - 0.05, WINDOW.1 + 0.03].map(|x| (x, curve.average.at(x)));
-            curve.style.line(&mut chart, ends)?;
+            let Curve { style, .. } = *curve;
+            panel.line([WINDOW.0 - 0.05, WINDOW.1 + 0.03].map(|x| (x, curve.average.at(x))), style.pen);
             let at = |point: &Point| (point.penetration.mean, point.load.log10());
-            let bars = curve.points.iter().map(|point| (at(point), point.penetration.deviation));
-            error_bars(&mut chart, bars, true, curve.style.colour)?;
-            curve.style.marks(&mut chart, curve.points.iter().map(at))?;
-            lines.push((marks::Sample::Mark(curve.style), format!("N = {}", curve.waves)));
+            panel.bars_along_x(curve.points.iter().map(|point| (at(point), point.penetration.deviation)), style.colour);
+            panel.marks(curve.points.iter().map(at), style.mark);
             let u0 = curve.decay_lengths();
-            let text = format!("u0 = ({:.3} ± {:.3}) h_rms", u0.mean, u0.error());
-            lines.push((marks::Sample::Line(curve.style), text));
+            keys.push((Key::Mark(style.mark), format!("N = {}", curve.waves)));
+            keys.push((Key::Line(style.pen), format!("u0 = ({:.3} ± {:.3}) h_rms", u0.mean, u0.error())));
         }
         if let Some(curve) = self.curves.first() {
             let text = format!("Persson, γ = {:.2}: u0 = {:.3} h_rms", GAMMAS[1], GAMMAS[1] * curve.decay_length);
-            lines.push((marks::Sample::Dotted(GREY), text));
+            keys.push((Key::Line(persson), text));
         }
-        write(&mut chart, (0.295, Y.0 + 0.12), Side::Right, "fitted", BLACK)?;
-        legend(&mut chart, (0.03, Y.1 - 0.15), 0.2, &lines)
+        panel.note((0.295, Y.0 + 0.12), "fitted");
+        panel.legend((0.03, Y.1 - 0.15), 0.2, keys);
+        panel
     }
 }
 

@@ -13,8 +13,8 @@ use rc_theory::persson::Persson;
 
 use plotters::prelude::DrawingBackend;
 
+use crate::chart::{STYLES, Style};
 use crate::fit::{Line, Sample};
-use crate::marks::{STYLES, Style};
 use crate::sweep::ELEMENTS_PER_WAVE;
 use crate::{Figure, Preset, Table, paper};
 
@@ -155,34 +155,6 @@ impl Figure for Fig8 {
     fn tables(&self) -> Vec<Table> {
         vec![self.summary(), self.bins_table(), self.small_table(), self.refined_table()]
     }
-
-    fn caption(&self) -> Option<String> {
-        let fits: Vec<String> = self
-            .curves
-            .iter()
-            .map(|curve| {
-                format!(
-                    "N = {}: Λ = {:.3e} E*², {:.3} times the theory's g²/8; erf(σ0/2√Λ) = {:.4}, A/A0 = {:.4}",
-                    curve.waves,
-                    curve.fit.lambda,
-                    curve.lambda_over_theory(),
-                    curve.fit.area_fraction(),
-                    curve.area.mean
-                )
-            })
-            .collect();
-        let first = self.curves.first()?;
-        Some(format!(
-            "**Fig. 8.** (a) Distribution of the interfacial stress at σ0/E* = {:.2e}, averages of {} realisations in bins of \
-             {:.0e} E*. Lines: Eq. 7 with Λ fitted ({}). Inset: the same, semi-logarithmic. (b) The approach to zero on \
-             logarithmic axes. p² is linear across a contact edge. Interpolated in this way, P falls linearly with σ (grey \
-             guide: slope 1). A histogram of the same elements (thin lines) does not fall.\n",
-            self.load,
-            first.n_realisations(),
-            first.bin_width(),
-            fits.join("; "),
-        ))
-    }
 }
 
 impl Picture for Fig8 {
@@ -191,7 +163,7 @@ impl Picture for Fig8 {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        self.draw_panels(area).map_err(PictureError::new)
+        self.draw_panels(area)
     }
 }
 
@@ -287,14 +259,6 @@ impl Curve {
             fit: Persson::fit(params.load, &averages),
             lambda: sample(&|one| one.lambda),
         })
-    }
-
-    fn n_realisations(&self) -> usize {
-        self.area.n()
-    }
-
-    fn bin_width(&self) -> f64 {
-        self.bins.first().map_or(0.0, |bin| 2.0 * bin.stress)
     }
 
     fn lambda_over_theory(&self) -> f64 {

@@ -38,10 +38,6 @@ pub trait Figure: Picture + Sized {
     fn compute(params: &Self::Params) -> Result<Self>;
     /// The numbers as tables.
     fn tables(&self) -> Vec<Table>;
-    /// Explanation of the picture in Markdown, if a title is not enough.
-    fn caption(&self) -> Option<String> {
-        None
-    }
 }
 
 /// Computes one figure and writes it into `folder`.
@@ -68,7 +64,7 @@ pub(crate) fn report(figure: &impl Figure, files: &[PathBuf]) {
     }
 }
 
-/// Writes the tables, the caption and both pictures of a figure into `folder`.
+/// Writes the tables and both pictures of a figure into `folder`.
 ///
 /// Returns the files.
 ///
@@ -80,11 +76,6 @@ pub fn write<F: Figure>(figure: &F, folder: &Path) -> Result<Vec<PathBuf>> {
     for table in figure.tables() {
         let path = folder.join(format!("{}-{}.csv", F::NAME, table.name));
         fs::write(&path, &table.csv).with_context(|| format!("could not write {}", path.display()))?;
-        files.push(path);
-    }
-    if let Some(caption) = figure.caption() {
-        let path = folder.join(format!("{}.md", F::NAME));
-        fs::write(&path, caption).with_context(|| format!("could not write {}", path.display()))?;
         files.push(path);
     }
     let picture = |extension: &str| folder.join(format!("{}.{extension}", F::NAME));
@@ -118,8 +109,7 @@ pub(crate) mod tests {
     pub(crate) fn assert_written<F: Figure>(figure: &F) {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let files = write(figure, folder.path()).expect("the figure is written");
-        let n_captions = usize::from(figure.caption().is_some());
-        assert_eq!(files.len(), figure.tables().len() + n_captions + 2, "{files:?}");
+        assert_eq!(files.len(), figure.tables().len() + 2, "{files:?}");
         for file in files {
             let bytes = fs::read(&file).expect("a written file");
             let (start, min_bytes): (&[u8], usize) = match file.extension().and_then(|extension| extension.to_str()) {

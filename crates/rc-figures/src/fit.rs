@@ -43,11 +43,6 @@ impl Sample {
         Self { mean, deviation: (squares / (n - 1.0)).sqrt(), n: values.len() }
     }
 
-    /// Number of values.
-    pub(crate) fn n(&self) -> usize {
-        self.n
-    }
-
     /// Standard error of the mean.
     pub(crate) fn error(&self) -> f64 {
         self.deviation / (self.n as f64).sqrt()

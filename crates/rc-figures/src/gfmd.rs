@@ -2,13 +2,9 @@
 //!
 //! The results are area, stress, gap and energy against pressure. The reference is Green's function molecular dynamics
 //! by Y. Zhou and M. H. Müser, published with the comparison of Persson's theories of Y. Xu
-//! (`PerssonModelFudgeFactor`). The numbers that this project quotes are in `data/gfmd.csv`. [`beside`] reads the
-//! others from a copy of the reference's files.
+//! (`PerssonModelFudgeFactor`). Numbers from its files are in `data/gfmd.csv` and `data/gfmd-stress.csv`.
 
-mod beside;
 mod drawing;
-#[cfg(test)]
-mod mat_file;
 mod published;
 mod tables;
 
@@ -21,10 +17,9 @@ use rc_solver::{ContactArea, Control, SolveParams, StressDistribution, Tolerance
 use rc_theory::full_contact;
 use rc_theory::persson::Persson;
 
+use crate::chart::draw_panels;
 use crate::{Figure, Preset, Table};
 use published::Published;
-
-pub use beside::beside;
 
 /// Elastic energy of full contact per nominal area, divided by E* and the longest wavelength.
 ///
@@ -150,17 +145,6 @@ impl Figure for Gfmd {
     fn tables(&self) -> Vec<Table> {
         vec![self.surface_table(), self.areas_table(), self.curve_table(), self.stress_table()]
     }
-
-    fn caption(&self) -> Option<String> {
-        Some(format!(
-            "**A published reference.** A self-affine surface with {} longest waves of {} shortest waves in the cell, on {}² \
-             elements. (a) κ = (A/A0) g E*/σ0 against the load: located and counted areas, both sets of the reference (the first \
-             with its standard deviation), Persson's theory. (b) The differences of the areas. Bars contain our error bar and \
-             the standard deviation of the reference. (c) The distribution of the stress, and Persson's without a fit. (d) Mean \
-             gap relative to the rms height, and elastic energy relative to that of full contact.\n",
-            self.params.longest, self.params.ratio, self.params.side,
-        ))
-    }
 }
 
 impl Picture for Gfmd {
@@ -169,7 +153,8 @@ impl Picture for Gfmd {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        self.draw_panels(area).map_err(PictureError::new)
+        let panels = [self.kappa_panel(), self.difference_panel(), self.stress_panel(), self.gap_and_energy_panel()];
+        draw_panels(area, (2, 2), &panels)
     }
 }
 

@@ -1,25 +1,20 @@
 //! The figures of the paper, one file each: numbers first, then a picture of them.
 //!
-//! A [`Figure`] computes itself from its parameters, and has tables and a drawing. [`run`] writes one figure,
-//! [`all::run`] writes every figure of the paper, and [`reproduction`] puts their numbers into docs/reproduction.md.
-//! [`Gfmd`] and [`Challenge`] are published references. [`run_one`] archives them, and their numbers are in
-//! [`documents`]. `rc-bench` uses [`Table`], [`comparison`], [`numeric`], [`snapshot`], [`blocks`] and [`repository`]
-//! too.
+//! A [`Figure`] computes itself from its parameters, and has tables and a drawing. [`run`] writes one figure, and
+//! [`all::run`] writes every figure of the paper. [`Gfmd`] and [`Challenge`] are published references, which
+//! [`run_one`] archives. [`blocks`] puts the numbers of archived figures into pages. `rc-bench` uses [`Table`],
+//! [`comparison`], [`numeric`], [`snapshot`], [`blocks`] and [`repository`] too.
 
 pub mod all;
 pub mod archive;
 pub mod blocks;
 pub mod challenge;
 pub mod comparison;
-pub mod documents;
-pub mod guide;
 pub mod numeric;
 pub mod repository;
-pub mod reproduction;
 pub mod snapshot;
 
 mod chart;
-mod contact_map;
 mod fig1;
 mod fig2;
 mod fig3;
@@ -31,13 +26,13 @@ mod fig8;
 mod figure;
 mod fit;
 mod gfmd;
-mod marks;
 mod paper;
-mod single;
+mod shown;
 mod statements;
 mod sweep;
 mod table;
 
+pub use all::run_one;
 pub use challenge::Challenge;
 pub use comparison::Rule;
 pub use fig1::Fig1;
@@ -49,7 +44,6 @@ pub use fig6::Fig6;
 pub use fig7::Fig7;
 pub use fig8::Fig8;
 pub use figure::{Figure, Preset, run, write};
-pub use gfmd::{Gfmd, beside};
-pub use single::run_one;
+pub use gfmd::Gfmd;
 pub use statements::Statements;
 pub use table::{Table, number};

@@ -9,7 +9,8 @@ use rc_fractal::{SpectrumParams, Surface};
 use rc_solver::{Control, SolveParams, solve};
 
 use crate::fit::Sample;
-use crate::{Preset, Rule, Table, number, paper};
+use crate::table::Rows;
+use crate::{Preset, Rule, Table, paper};
 
 /// Elements for the shortest wave. Their side is λ_min/32, half as large as the paper's.
 pub(crate) const ELEMENTS_PER_WAVE: usize = 32;
@@ -125,21 +126,20 @@ impl Sweep {
 
     /// Mean and scatter as in [`Sweep::sample`], with the further realisations of that load.
     pub(crate) fn larger_sample(&self, waves: usize, load: f64, of: impl Fn(&State) -> f64) -> Sample {
-        let more = self.more.iter().filter(|state| state.waves == waves && state.load.total_cmp(&load).is_eq());
-        Sample::of(&self.at(waves, load).chain(more).map(of).collect::<Vec<_>>())
+        Sample::of(&self.all_at(waves, load).map(of).collect::<Vec<_>>())
     }
 
     /// Ratio of the areas of two N, realisation by realisation.
     ///
     /// The two surfaces of a pair share their long waves.
     pub(crate) fn area_ratio(&self, waves: usize, over: usize, load: f64) -> Sample {
-        let all = |waves: usize| {
-            let more =
-                self.more.iter().filter(move |state| state.waves == waves && state.load.total_cmp(&load).is_eq());
-            self.at(waves, load).chain(more)
-        };
-        let pairs = all(waves).zip(all(over)).filter(|(a, b)| a.seed == b.seed);
+        let pairs = self.all_at(waves, load).zip(self.all_at(over, load)).filter(|(a, b)| a.seed == b.seed);
         Sample::of(&pairs.map(|(a, b)| a.area / b.area).collect::<Vec<_>>())
+    }
+
+    fn all_at(&self, waves: usize, load: f64) -> impl Iterator<Item = &State> {
+        let is_it = move |state: &&State| state.waves == waves && state.load.total_cmp(&load).is_eq();
+        self.states.iter().chain(&self.more).filter(is_it)
     }
 
     /// The contacts of one N and load, by realisation.
@@ -159,27 +159,17 @@ impl Sweep {
 
     /// Table of all contacts.
     pub(crate) fn table(&self) -> Table {
-        let header = [
-            "waves",
-            "seed",
-            "mean_pressure_over_e_star",
-            "area_fraction",
-            "area_fraction_by_counting",
-            "penetration_over_h_max",
-            "mean_gap_over_rms_height",
-            "h_max_over_rms_height",
-        ];
-        let rows = self.states.iter().chain(&self.more).map(|state| {
-            let numbers =
-                [state.load, state.area, state.area_cells, state.penetration, state.mean_gap, state.h_max].map(number);
-            [state.waves.to_string(), state.seed.to_string()].into_iter().chain(numbers).collect()
-        });
-        Table::new("realisations", &header, rows)
-            .column("area_fraction", Rule::relative(5e-4))
-            .column("area_fraction_by_counting", Rule::relative(5e-4))
-            .column("penetration_over_h_max", Rule::of_scale(1e-5))
-            .column("mean_gap_over_rms_height", Rule::of_scale(1e-5))
-            .column("h_max_over_rms_height", Rule::relative(1e-5))
+        let (area, length) = (Rule::relative(5e-4), Rule::of_scale(1e-5));
+        Rows::of(self.states.iter().chain(&self.more))
+            .column("waves", |state| state.waves)
+            .column("seed", |state| state.seed)
+            .column("mean_pressure_over_e_star", |state| state.load)
+            .within("area_fraction", area, |state| state.area)
+            .within("area_fraction_by_counting", area, |state| state.area_cells)
+            .within("penetration_over_h_max", length, |state| state.penetration)
+            .within("mean_gap_over_rms_height", length, |state| state.mean_gap)
+            .within("h_max_over_rms_height", Rule::relative(1e-5), |state| state.h_max)
+            .table("realisations")
     }
 }
 

@@ -5,12 +5,13 @@ use std::fs;
 use anyhow::{Context, Result};
 use rc_sweep::memory;
 
-use super::tables::SOLVED;
+use super::tables::solved;
 use super::{Params, REFERENCE_LOAD, Solved, Source, press};
-use crate::{Table, documents, number, repository};
+use crate::table::Rows;
+use crate::{Table, blocks, repository};
 
 /// File of the archived run.
-const FILE: &str = "data/runs/challenge/large.csv";
+const FILE: &str = "data/runs/challenge/challenge-large.csv";
 
 /// The contact under [`REFERENCE_LOAD`] on a grid of the reference's size.
 #[derive(Clone, Debug)]
@@ -44,14 +45,13 @@ impl Large {
     /// Table with one line, the results of this contact.
     #[must_use]
     pub fn table(&self) -> Table {
-        let mut header = vec!["surface", "side"];
-        header.extend(SOLVED);
-        header.extend(["threads", "seconds", "peak_memory_megabytes"]);
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        let mut cells = vec![self.source.to_owned(), self.side.to_string()];
-        cells.extend(self.solved.cells(REFERENCE_LOAD));
-        cells.extend([threads.to_string(), number(self.solved.seconds), number(self.megabytes)]);
-        Table::new("large", &header, [cells])
+        let rows = Rows::of([self]).column("surface", |_| self.source.to_owned()).column("side", |_| self.side);
+        solved(rows, |_| (REFERENCE_LOAD, &self.solved))
+            .column("threads", |_| threads)
+            .column("seconds", |_| self.solved.seconds)
+            .column("peak_memory_megabytes", |_| self.megabytes)
+            .table("large")
     }
 }
 
@@ -65,7 +65,7 @@ pub fn archive_large(large: &Large) -> Result<()> {
         fs::create_dir_all(folder).with_context(|| format!("could not make {}", folder.display()))?;
     }
     fs::write(&path, large.table().csv).with_context(|| format!("could not write {}", path.display()))?;
-    documents::update()
+    blocks::update()
 }
 
 #[cfg(test)]

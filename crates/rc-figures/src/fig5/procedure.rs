@@ -7,7 +7,8 @@ use rc_core::{Grid, HeightField as _};
 use rc_fractal::{SpectrumParams, Surface};
 use rc_solver::{Control, Method, SolveParams, solve};
 
-use crate::{Rule, Table, number};
+use crate::table::Rows;
+use crate::{Rule, Table};
 
 /// The contacts that both methods solve.
 ///
@@ -88,32 +89,17 @@ pub(super) fn solve_all(params: &Params) -> Result<Vec<Pair>> {
 }
 
 pub(super) fn table(params: &Params, pairs: &[Pair]) -> Table {
-    let header = [
-        "waves",
-        "seed",
-        "mean_pressure_over_e_star",
-        "area_fraction_by_procedure",
-        "area_fraction",
-        "relative_difference",
-        "penetration_over_h_max_by_procedure",
-        "penetration_over_h_max",
-        "elements_by_procedure",
-        "elements",
-    ];
-    let rows = pairs.iter().map(|pair| {
-        let Pair { seed, load, procedure, every_element } = *pair;
-        let numbers = [
-            load,
-            procedure.area,
-            every_element.area,
-            pair.difference(),
-            procedure.penetration,
-            every_element.penetration,
-        ];
-        let ends = [params.waves.to_string(), seed.to_string()].into_iter().chain(numbers.map(number));
-        ends.chain([procedure.elements.to_string(), every_element.elements.to_string()]).collect()
-    });
-    Table::new("procedure", &header, rows)
+    Rows::of(pairs)
+        .column("waves", |_| params.waves)
+        .column("seed", |pair| pair.seed)
+        .column("mean_pressure_over_e_star", |pair| pair.load)
+        .column("area_fraction_by_procedure", |pair| pair.procedure.area)
+        .column("area_fraction", |pair| pair.every_element.area)
+        .within("relative_difference", Rule::absolute(2e-4), |pair| pair.difference())
+        .column("penetration_over_h_max_by_procedure", |pair| pair.procedure.penetration)
+        .column("penetration_over_h_max", |pair| pair.every_element.penetration)
+        .column("elements_by_procedure", |pair| pair.procedure.elements)
+        .column("elements", |pair| pair.every_element.elements)
+        .table("procedure")
         .rest(Rule::relative(2e-4))
-        .column("relative_difference", Rule::absolute(2e-4))
 }

@@ -1,4 +1,4 @@
-//! The published areas, from `data/gfmd.csv`.
+//! The published numbers, from `data/gfmd.csv` and `data/gfmd-stress.csv`.
 
 use anyhow::{Context, Result};
 
@@ -36,10 +36,72 @@ fn one(line: &str) -> Result<Published> {
 mod tests {
     use super::*;
 
+    /// The numbers of a table; `None` for empty cells.
+    fn rows(csv: &str) -> Vec<Vec<Option<f64>>> {
+        csv.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().ok()).collect()).collect()
+    }
+
     #[test]
     fn areas_rise_and_the_second_set_is_below_the_first() {
         let all = all().expect("numbers");
         assert!(all.len() == 14 && all.windows(2).all(|two| two[0].load < two[1].load && two[0].first < two[1].first));
         assert!(all.iter().all(|one| one.second.is_none_or(|second| second < one.first && second > 0.9 * one.first)));
+    }
+
+    /// What docs/benchmarks.md says about located areas and the second set.
+    #[test]
+    fn the_archived_areas_are_as_published() {
+        let ours = rows(include_str!("../../../../data/runs/gfmd/gfmd-areas.csv"));
+        for (ours, published) in ours.iter().zip(all().expect("numbers")) {
+            assert_eq!(ours[0], Some(published.load));
+            let Some(second) = published.second else { continue };
+            let difference = ours[1].expect("an area") / second - 1.0;
+            let claim = match published.load {
+                5e-3..0.03 => -0.015..-0.0095,
+                0.04.. => -0.01..0.01,
+                _ => -0.04..0.0,
+            };
+            assert!(claim.contains(&difference), "{difference} at {}", published.load);
+        }
+    }
+
+    /// What docs/benchmarks.md says about energy and mean gap of the archived run.
+    #[test]
+    fn the_archived_energy_and_gap_are_as_published() {
+        let ours = rows(include_str!("../../../../data/runs/gfmd/gfmd-curve.csv"));
+        assert_eq!(ours.len(), 14);
+        for (ours, published) in ours.iter().zip(rows(VALUES)) {
+            let (load, gap, energy) = (ours[0].expect("a load"), ours[2].expect("a gap"), ours[4].expect("an energy"));
+            assert_eq!(published[0], Some(load));
+            let (of_reference, deviation) = (published[4].expect("an energy"), published[5].expect("its s.d."));
+            let bound = if load < 0.065 { deviation } else { 0.01 * of_reference };
+            assert!((energy - of_reference).abs() < bound, "energy {energy} against {of_reference} at {load}");
+            // The files do not say whether a gap is the middle of its bin or its lower end, half a bin below.
+            let (Some(low), Some(high)) = (published[6], published[7]) else { continue };
+            match load {
+                1e-4 => assert!(gap > high && gap < 1.04 * high, "{gap} at the lightest load"),
+                1e-3..0.02 => assert!((low..high).contains(&gap), "gap {gap} between {low} and {high} at {load}"),
+                _ => assert!(gap < low && gap > 0.94 * low, "gap {gap} and {low} at {load}"),
+            }
+        }
+    }
+
+    /// What docs/benchmarks.md says about the stress of the archived run.
+    #[test]
+    fn the_archived_stress_is_as_published() {
+        let ours = rows(include_str!("../../../../data/runs/gfmd/gfmd-stress.csv"));
+        let ours: Vec<[f64; 3]> = ours.iter().map(|row| [0, 1, 2].map(|i| row[i].expect("a number"))).collect();
+        // Loads, ranges of the stress, and the largest relative difference there.
+        let claims = [(0.025, 0.08..0.32, 0.081), (0.113, 0.08..0.4, 0.06), (0.24, 0.1..0.46, 0.035)];
+        for row in rows(include_str!("../../../../data/gfmd-stress.csv")) {
+            let [load, stress, published] = [0, 1, 2].map(|i| row[i].expect("a number"));
+            let (_, range, bound) =
+                claims.iter().find(|claim| load.total_cmp(&claim.0).is_eq()).expect("a load of a claim");
+            let ours = ours.iter().filter(|row| row[0].total_cmp(&load).is_eq()).collect::<Vec<_>>();
+            let pair = ours.windows(2).find(|two| (two[0][1]..two[1][1]).contains(&stress));
+            let Some([a, b]) = pair.filter(|_| range.contains(&stress)) else { continue };
+            let density = a[2] + (b[2] - a[2]) * (stress - a[1]) / (b[1] - a[1]);
+            assert!((density / published - 1.0).abs() < *bound, "{density} against {published}: {stress} at {load}");
+        }
     }
 }

@@ -6,7 +6,8 @@ use rc_fractal::{SpectrumParams, Surface};
 use rc_solver::{Control, SolveParams, solve};
 
 use super::params::Params;
-use crate::{Rule, Table, number};
+use crate::table::Rows;
+use crate::{Rule, Table};
 
 /// Results on one mesh.
 #[derive(Clone, Copy, Debug)]
@@ -60,25 +61,18 @@ impl Mesh {
 
 /// Table of the values, and of errors relative to the finest mesh.
 pub(super) fn table(meshes: &[Mesh]) -> Table {
-    let header = [
-        "elements_per_wave",
-        "area_fraction_by_counting",
-        "area_fraction",
-        "rms_pressure_over_e_star",
-        "penetration_over_side",
-        "counting_error",
-        "area_error",
-        "rms_pressure_error",
-        "penetration_error",
-    ];
-    let errors = ["counting_error", "area_error", "rms_pressure_error", "penetration_error"];
-    let rows = meshes.iter().zip(meshes.last().into_iter().cycle()).map(|(mesh, finest)| {
-        let Errors { counting, located, rms_pressure, penetration } = mesh.errors(finest);
-        let values = [mesh.area_cells, mesh.area, mesh.rms_pressure, mesh.penetration];
-        let numbers = values.into_iter().chain([counting, located, rms_pressure, penetration]).map(number);
-        [mesh.elements_per_wave.to_string()].into_iter().chain(numbers).collect()
-    });
-    let table = Table::new("convergence", &header, rows).rest(Rule::relative(1e-4));
     // These errors are relative already.
-    errors.into_iter().fold(table, |table, name| table.column(name, Rule::absolute(2e-5)))
+    let error = Rule::absolute(2e-5);
+    Rows::of(meshes.iter().zip(meshes.last().into_iter().cycle()).map(|(mesh, finest)| (mesh, mesh.errors(finest))))
+        .column("elements_per_wave", |(mesh, _)| mesh.elements_per_wave)
+        .column("area_fraction_by_counting", |(mesh, _)| mesh.area_cells)
+        .column("area_fraction", |(mesh, _)| mesh.area)
+        .column("rms_pressure_over_e_star", |(mesh, _)| mesh.rms_pressure)
+        .column("penetration_over_side", |(mesh, _)| mesh.penetration)
+        .within("counting_error", error, |(_, errors)| errors.counting)
+        .within("area_error", error, |(_, errors)| errors.located)
+        .within("rms_pressure_error", error, |(_, errors)| errors.rms_pressure)
+        .within("penetration_error", error, |(_, errors)| errors.penetration)
+        .table("convergence")
+        .rest(Rule::relative(1e-4))
 }

@@ -11,7 +11,8 @@ use rc_solver::{Control, SolveParams, solve};
 
 use super::params::Params;
 use crate::fit::Sample;
-use crate::{Rule, Table, number};
+use crate::table::Rows;
+use crate::{Rule, Table};
 
 /// Averages over realisations for one N.
 #[derive(Clone, Copy, Debug)]
@@ -81,35 +82,17 @@ fn contact(params: &Params, surface: &Surface) -> Result<Contact> {
 }
 
 pub(super) fn table(cutoffs: &[Cutoff]) -> Table {
-    let header = [
-        "waves",
-        "rms_slope",
-        "area_fraction",
-        "area_standard_error",
-        "area_over_first",
-        "kappa",
-        "energy_over_e_star_side",
-        "energy_over_first",
-        "energy_over_first_standard_error",
-        "penetration_over_h_max",
-    ];
-    let rows = cutoffs.iter().map(|cutoff| {
-        let Cutoff { rms_slope, area, area_ratio, kappa, energy, energy_ratio, penetration, .. } = *cutoff;
-        let numbers = [
-            rms_slope,
-            area.mean,
-            area.error(),
-            area_ratio.mean,
-            kappa,
-            energy.mean,
-            energy_ratio.mean,
-            energy_ratio.error(),
-            penetration.mean,
-        ];
-        [cutoff.waves.to_string()].into_iter().chain(numbers.map(number)).collect()
-    });
-    Table::new("cutoff", &header, rows)
+    Rows::of(cutoffs)
+        .column("waves", |cutoff| cutoff.waves)
+        .column("rms_slope", |cutoff| cutoff.rms_slope)
+        .column("area_fraction", |cutoff| cutoff.area.mean)
+        .within("area_standard_error", Rule::of_scale(5e-4), |cutoff| cutoff.area.error())
+        .column("area_over_first", |cutoff| cutoff.area_ratio.mean)
+        .column("kappa", |cutoff| cutoff.kappa)
+        .column("energy_over_e_star_side", |cutoff| cutoff.energy.mean)
+        .column("energy_over_first", |cutoff| cutoff.energy_ratio.mean)
+        .within("energy_over_first_standard_error", Rule::of_scale(5e-4), |cutoff| cutoff.energy_ratio.error())
+        .column("penetration_over_h_max", |cutoff| cutoff.penetration.mean)
+        .table("cutoff")
         .rest(Rule::relative(1e-4))
-        .column("area_standard_error", Rule::of_scale(5e-4))
-        .column("energy_over_first_standard_error", Rule::of_scale(5e-4))
 }

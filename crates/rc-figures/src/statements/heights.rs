@@ -10,7 +10,8 @@ use rc_fractal::{SpectrumParams, Surface};
 
 use super::params::Params;
 use crate::fit::Sample;
-use crate::{Rule, Table, number};
+use crate::table::Rows;
+use crate::{Rule, Table};
 
 /// Upper end of the bins, in rms heights. The width of a bin follows.
 const END: f64 = 4.0;
@@ -83,15 +84,14 @@ impl Heights {
     }
 
     pub(super) fn table(&self) -> Table {
-        let header = ["height_over_rms", "density", "standard_deviation_of_one", "gaussian"];
-        let rows = self
-            .bins
-            .iter()
-            .map(|&(height, density)| [height, density.mean, density.deviation, gaussian(height)].map(number).into());
         // A height at the end of a bin may fall into either bin.
-        Table::new("heights", &header, rows)
-            .column("density", Rule::of_scale(1e-4))
-            .column("standard_deviation_of_one", Rule::of_scale(1e-4))
+        let density = Rule::of_scale(1e-4);
+        Rows::of(&self.bins)
+            .column("height_over_rms", |(height, _)| *height)
+            .within("density", density, |(_, sample)| sample.mean)
+            .within("standard_deviation_of_one", density, |(_, sample)| sample.deviation)
+            .column("gaussian", |(height, _)| gaussian(*height))
+            .table("heights")
     }
 }
 
