@@ -18,12 +18,6 @@ pub(crate) struct Args {
     /// Only groups whose name contains this.
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
-    /// Puts faults into a copy of the sources, and counts the rows that fail.
-    ///
-    /// The faults are applied one at a time, and the rows are those of the reduced set. With --only, it takes only
-    /// faults whose name contains it. This takes hours.
-    #[arg(long)]
-    mutate: bool,
     /// Prints a number that depends on every bit of one solution, for comparison between processes.
     #[arg(long, value_name = "SCENE", hide = true)]
     fingerprint: Option<usize>,
@@ -32,9 +26,6 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<()> {
     if let Some(scene) = args.fingerprint {
         return stress::print_fingerprint(scene);
-    }
-    if args.mutate {
-        return stress::mutate(args.only.as_deref(), &args.figure.out);
     }
     let params = Params { preset: args.figure.preset(), only: args.only.clone(), rc: Some(rc) };
     stress::run(&params, &args.figure.out)

@@ -13,7 +13,6 @@ mod kernels;
 mod light;
 mod long_runs;
 mod meshes;
-mod mutate;
 mod picture;
 mod row;
 mod scene;
@@ -29,7 +28,6 @@ use rc_figures::{Figure, Preset, Table, write};
 use rc_plot::{Area, Picture, PictureError};
 
 pub use commands::{Refusal, RunRc};
-pub use mutate::run as mutate;
 use row::{Row, Rows, guarded};
 
 /// Selection of the scenes.

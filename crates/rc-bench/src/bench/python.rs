@@ -19,17 +19,12 @@ const ASPHER: &str = "aspher==0.1.3.post1";
 /// Build options that make ASPHER fastest. Without the FFTW library it is built with its own transform.
 const FASTEST: &str = "-DASPHER_NATIVE=ON -DASPHER_USE_FFTW=ON";
 
-/// The interpreter of an environment that has all peers.
-///
-/// It is `given`, or an environment that is made now unless it exists.
+/// The interpreter of an environment that has all peers, which is made now unless it exists.
 ///
 /// # Errors
 /// When a step fails. The text says which, and what to do about it.
-pub(super) fn interpreter(given: Option<&Path>) -> Result<PathBuf> {
-    match given {
-        Some(python) => Ok(python.to_path_buf()),
-        None => environment(&repository::root().join("target/bench-peers")),
-    }
+pub(super) fn interpreter() -> Result<PathBuf> {
+    environment(&repository::root().join("target/bench-peers"))
 }
 
 fn environment(folder: &Path) -> Result<PathBuf> {
@@ -78,18 +73,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_made_environment_is_used_again() {
+    fn a_made_environment_is_used_again_and_every_package_is_pinned() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         fs::write(folder.path().join("ready.txt"), format!("{REQUIREMENTS}{ASPHER}\n")).expect("a written file");
         let python = environment(folder.path()).expect("nothing has to be made");
         assert!(python.starts_with(folder.path()), "{}", python.display());
-        assert_eq!(interpreter(Some(Path::new("python"))).ok(), Some(PathBuf::from("python")));
-    }
-
-    #[test]
-    fn every_requirement_is_pinned() {
-        let lines = REQUIREMENTS.lines().filter(|line| !line.starts_with('#'));
-        assert!(lines.chain([ASPHER]).all(|line| line.contains("==")), "{REQUIREMENTS}");
+        let mut lines = REQUIREMENTS.lines().filter(|line| !line.starts_with('#')).chain([ASPHER]);
+        assert!(lines.all(|line| line.contains("==")), "{REQUIREMENTS}");
     }
 
     #[test]
