@@ -19,7 +19,7 @@ mod tidy;
 mod wheel;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
-use rc_bench::{Accuracy, KernelErrors};
+use rc_bench::Accuracy;
 use rc_figures::{Fig1, Fig2, Fig3, Fig4, Fig5, Fig6, Fig7, Fig8, Statements};
 
 /// Tests, checks, figures and benchmarks of rc. Needs nothing but cargo.
@@ -59,9 +59,7 @@ enum Command {
     Gfmd(gfmd::Args),
     GuideFigures(guide_figures::Args),
     Challenge(challenge::Args),
-    /// Tabulates and draws the truncation error of the image sums against shells and time
-    KernelError(figures::Args),
-    /// Measures errors and error bars of area, rms pressure and mean gap on usual meshes
+    /// Measures how often the error bars of area, rms pressure and mean gap hold
     Accuracy(figures::Args),
     Bench(bench::Args),
     Mpi(mpi::Args),
@@ -93,7 +91,6 @@ fn main() -> anyhow::Result<()> {
         Command::Gfmd(args) => gfmd::run(&args),
         Command::GuideFigures(args) => guide_figures::run(&args),
         Command::Challenge(args) => challenge::run(&args),
-        Command::KernelError(args) => figures::run::<KernelErrors>(&args),
         Command::Accuracy(args) => figures::run::<Accuracy>(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Mpi(args) => mpi::run(&args),

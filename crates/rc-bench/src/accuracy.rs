@@ -270,7 +270,8 @@ mod tests {
 
     #[test]
     fn bars_hold_on_the_quick_set() {
-        let accuracy = Accuracy::compute(&Accuracy::params(Preset::Quick).expect("constants")).expect("solvable scenes");
+        let accuracy =
+            Accuracy::compute(&Accuracy::params(Preset::Quick).expect("constants")).expect("solvable scenes");
         let covered: Vec<_> = accuracy.bars.iter().filter(|bars| bars.is_covered()).collect();
         // The number of bars that hold may differ from 95 % by four standard errors of independent scenes. Some scenes
         // share a surface, and are not independent.

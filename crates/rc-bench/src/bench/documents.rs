@@ -81,7 +81,8 @@ mod tests {
 
     /// Every block in each document, and the archived files.
     fn sources() -> Sources {
-        let blocks: Vec<String> = BLOCKS.iter().map(|name| format!("before {BEGIN}{name} -->stale{END} after")).collect();
+        let blocks: Vec<String> =
+            BLOCKS.iter().map(|name| format!("before {BEGIN}{name} -->stale{END} after")).collect();
         let document = blocks.join("\n");
         let reference = fs::read_to_string(repository::root().join(REFERENCE)).expect("the references");
         let machine = "version = \"0.1.0\"\nthreads = 2\n[peers]\ntamaas = \"2.9.0\"\n".to_owned();

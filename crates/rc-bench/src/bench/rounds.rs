@@ -129,8 +129,7 @@ fn is_too_long(cases: &[Case], i: usize, peer_seconds: f64) -> bool {
 /// They are 0 on the two coarsest meshes, since the first solve of a process takes longer than others. They are
 /// infinite when the coarser mesh was left out.
 fn expected(cases: &[Case], i: usize) -> f64 {
-    let is_coarser =
-        |case: &&Case| case.is_like(&cases[i]) && case.setting.elements_per_wave > COARSEST_OF_PEERS;
+    let is_coarser = |case: &&Case| case.is_like(&cases[i]) && case.setting.elements_per_wave > COARSEST_OF_PEERS;
     let coarser = cases[..i].iter().rfind(is_coarser);
     coarser.map_or(0.0, |case| case.outcomes.first().map_or(f64::INFINITY, |first| GROWTH * first.seconds))
 }
