@@ -24,12 +24,12 @@ pub(crate) struct Args {
     scenes: Vec<String>,
     /// Also measures ASPHER, Tamaas and ContactMechanics.
     ///
-    /// They are in a Python environment under `target/`, which is made from PyPI when needed.
+    /// The guide says how to install them.
     #[arg(long)]
     peers: bool,
-    /// A Python that has the peers, instead of the environment under `target/`.
-    #[arg(long, value_name = "PATH", requires = "peers")]
-    python: Option<PathBuf>,
+    /// A Python that has the peers, instead of that in `target/bench-peers/`.
+    #[arg(long, value_name = "PATH", requires = "peers", default_value_os_t = peers(), hide_default_value = true)]
+    python: PathBuf,
     /// Number of solves of each case. The result is their median.
     #[arg(long, default_value_t = 5)]
     repeats: usize,
@@ -76,6 +76,11 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         Args { make_reference: true, .. } => bench::make_reference(&chosen(args)?),
         _ => bench::measure(&params(args)?),
     }
+}
+
+/// The Python of the environment that the guide makes.
+fn peers() -> PathBuf {
+    repository::root().join("target/bench-peers/bin/python")
 }
 
 /// The scenes that `args` selects.

@@ -19,7 +19,7 @@ mod tidy;
 mod wheel;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
-use rc_bench::Accuracy;
+use rc_bench::accuracy;
 use rc_figures::{Fig1, Fig2, Fig3, Fig4, Fig5, Fig6, Fig7, Fig8, Statements};
 
 /// Tests, checks, figures and benchmarks of rc. Needs nothing but cargo.
@@ -91,7 +91,7 @@ fn main() -> anyhow::Result<()> {
         Command::Gfmd(args) => gfmd::run(&args),
         Command::GuideFigures(args) => guide_figures::run(&args),
         Command::Challenge(args) => challenge::run(&args),
-        Command::Accuracy(args) => figures::run::<Accuracy>(&args),
+        Command::Accuracy(args) => accuracy::run(args.preset(), &args.out),
         Command::Bench(args) => bench::run(&args),
         Command::Mpi(args) => mpi::run(&args),
         Command::Slurm(args) => slurm::run(&args),

@@ -5,15 +5,15 @@
 
 mod surfaces;
 
+use std::fs;
+use std::path::Path;
+
 use anyhow::{Context, Result};
-use plotters::prelude::DrawingBackend;
-use plotters::style::RGBColor;
 use rayon::prelude::*;
 use rc_core::{Grid, HeightField, HeightSource, Kernel, Silent};
 use rc_figures::numeric::median;
-use rc_figures::{Figure, Preset, Table, number};
+use rc_figures::{Preset, Table, number};
 use rc_kernel::{Love, Spectral};
-use rc_plot::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines};
 use rc_solver::{ContactProblem, Control, Method, Observables, SolveParams};
 
 use surfaces::{Kind, RMS_SLOPE};
@@ -31,22 +31,8 @@ const FINER: usize = 4;
 /// Contact is from half a percent to nearly full.
 const LOADS: (f64, f64) = (3e-3, 0.6);
 
-/// The quantities that have error bars, with their colours in the picture.
-const QUANTITIES: [(&str, RGBColor); 3] =
-    [("area", RGBColor(20, 20, 20)), ("rms pressure", RGBColor(213, 94, 0)), ("mean gap", RGBColor(0, 158, 115))];
-
-/// Number of scenes of each stratum, and whether only strata with few elements are solved.
-#[derive(Clone, Copy, Debug)]
-pub struct Params {
-    n_scenes: usize,
-    is_quick: bool,
-}
-
-/// Errors and error bars on surfaces of several kinds.
-#[derive(Clone, Debug)]
-pub struct Accuracy {
-    bars: Vec<Bars>,
-}
+/// The quantities that have error bars.
+const QUANTITIES: [&str; 3] = ["area", "rms pressure", "mean gap"];
 
 /// One discretisation of surfaces of one kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,131 +143,83 @@ impl Stratum {
     }
 }
 
-impl Figure for Accuracy {
-    const NAME: &'static str = "accuracy";
-    type Params = Params;
+/// Solves all scenes, and writes and prints the table.
+///
+/// # Errors
+/// When a contact cannot be solved, or the file cannot be written.
+#[expect(clippy::print_stdout, reason = "the result of the command")]
+pub fn run(preset: Preset, folder: &Path) -> Result<()> {
+    let (table, path) = (table(&measure(preset)?), folder.join("accuracy-coverage.csv"));
+    fs::create_dir_all(folder).and_then(|()| fs::write(&path, &table.csv)).context(path.display().to_string())?;
+    println!("{}\n{}", table.aligned(), path.display());
+    Ok(())
+}
 
-    fn params(preset: Preset) -> Result<Params> {
-        Ok(match preset {
-            Preset::Full => Params { n_scenes: 60, is_quick: false },
-            Preset::Quick => Params { n_scenes: 4, is_quick: true },
-        })
-    }
+/// The errors and bars of all scenes. The quick set has few scenes, and only strata with few elements.
+fn measure(preset: Preset) -> Result<Vec<Bars>> {
+    let (n_scenes, largest) = if preset == Preset::Full { (60, usize::MAX) } else { (4, 511) };
+    let strata = strata().into_iter().filter(|stratum| stratum.reference_side() <= largest);
+    let scenes: Vec<_> = strata.flat_map(|stratum| (0..n_scenes).map(move |i| (stratum, i))).collect();
+    scenes.into_par_iter().map(|(stratum, i)| stratum.bars(i).with_context(|| format!("{stratum:?}, {i}"))).collect()
+}
 
-    fn compute(&Params { n_scenes, is_quick }: &Params) -> Result<Self> {
-        let strata = strata().into_iter().filter(|stratum| !is_quick || stratum.reference_side() < 512);
-        let scenes: Vec<_> = strata.flat_map(|stratum| (0..n_scenes).map(move |i| (stratum, i))).collect();
-        let bars = scenes.into_par_iter();
-        let bars = bars.map(|(stratum, i)| stratum.bars(i).with_context(|| format!("{stratum:?}, {i}")));
-        Ok(Self { bars: bars.collect::<Result<_>>()? })
-    }
-
-    /// One line for each stratum, and one for all strata with surfaces that the bars are made for.
-    fn tables(&self) -> Vec<Table> {
-        let header = [
-            "surface",
-            "method",
-            "kernel",
-            "border_level",
-            "waves",
-            "elements_per_wave",
-            "element_ratio",
-            "scenes",
-            "area_covered_percent",
-            "rms_pressure_covered_percent",
-            "mean_gap_covered_percent",
-            "area_median_error_percent",
-            "area_median_bar_percent",
-        ];
-        let of_stratum = |(stratum, scenes): (Stratum, Vec<Bars>)| {
-            let names = [stratum.kind.name(), stratum.method.name(), stratum.kernel].map(str::to_owned);
-            let numbers = [stratum.border_level, stratum.waves, stratum.elements_per_wave, stratum.ratio];
-            let first = names.into_iter().chain(numbers.map(|number| number.to_string()));
-            first.chain(statistics(&scenes)).collect::<Vec<String>>()
-        };
-        let covered: Vec<Bars> = self.bars.iter().copied().filter(Bars::is_covered).collect();
-        let first = ["all but strips and creases", "", "", "", "", "", ""].map(str::to_owned);
-        let last = first.into_iter().chain(statistics(&covered)).collect();
-        vec![Table::new("coverage", &header, self.by_stratum().into_iter().map(of_stratum).chain([last]))]
-    }
+/// One line for each stratum, and one for all strata with surfaces that the bars are made for.
+fn table(all: &[Bars]) -> Table {
+    let header = [
+        "surface",
+        "method",
+        "kernel",
+        "border_level",
+        "waves",
+        "elements_per_wave",
+        "element_ratio",
+        "scenes",
+        "area_covered_percent",
+        "rms_pressure_covered_percent",
+        "mean_gap_covered_percent",
+        "area_median_error_percent",
+        "area_median_bar_percent",
+    ];
+    let of_stratum = |scenes: &[Bars]| {
+        let stratum = scenes.first()?.stratum;
+        let names = [stratum.kind.name(), stratum.method.name(), stratum.kernel].map(str::to_owned);
+        let numbers = [stratum.border_level, stratum.waves, stratum.elements_per_wave, stratum.ratio];
+        let first = names.into_iter().chain(numbers.map(|number| number.to_string()));
+        Some(first.chain(statistics(scenes)).collect::<Vec<String>>())
+    };
+    let covered: Vec<Bars> = all.iter().copied().filter(Bars::is_covered).collect();
+    let first = ["all but strips and creases", "", "", "", "", "", ""].map(str::to_owned);
+    let last = first.into_iter().chain(statistics(&covered)).collect();
+    let strata = all.chunk_by(|a, b| a.stratum == b.stratum).filter_map(of_stratum);
+    Table::new("coverage", &header, strata.chain([last]))
 }
 
 /// Number of scenes, percentages of scenes whose bars hold, and median error and bar of the area.
 fn statistics(scenes: &[Bars]) -> Vec<String> {
-    let held = |i: usize| 100.0 * scenes.iter().filter(|bars| bars.holds(i)).count() as f64 / scenes.len() as f64;
-    let [error, bar] = medians(scenes, 0).map(|median| 100.0 * median);
-    let values = (0..QUANTITIES.len()).map(held).chain([error, bar]);
-    [scenes.len().to_string()].into_iter().chain(values.map(number)).collect()
-}
-
-/// Median error and median bar of a quantity.
-fn medians(scenes: &[Bars], quantity: usize) -> [f64; 2] {
-    let of = |value: fn(&Bars, usize) -> f64| median(scenes.iter().map(|bars| value(bars, quantity)).collect());
-    [of(|bars, i| bars.errors[i].abs()), of(|bars, i| bars.bars[i])]
-}
-
-impl Accuracy {
-    /// The scenes of each stratum, in the order of the strata.
-    fn by_stratum(&self) -> Vec<(Stratum, Vec<Bars>)> {
-        let mut strata: Vec<(Stratum, Vec<Bars>)> = Vec::new();
-        for bars in &self.bars {
-            match strata.iter_mut().find(|(stratum, _)| *stratum == bars.stratum) {
-                Some((_, scenes)) => scenes.push(*bars),
-                None => strata.push((bars.stratum, vec![*bars])),
-            }
-        }
-        strata
-    }
-}
-
-impl Picture for Accuracy {
-    fn size(&self) -> (u32, u32) {
-        (900, 800)
-    }
-
-    /// Draws a point for each stratum and quantity: median error against median bar.
-    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
-        let strata = self.by_stratum();
-        let series = QUANTITIES.into_iter().enumerate().map(|(i, (name, colour))| {
-            let [x, y] = [1, 0];
-            let point = |(_, scenes): &(Stratum, Vec<Bars>)| {
-                let both = medians(scenes, i).map(f64::log10);
-                (both[x], both[y])
-            };
-            Series { name, points: strata.iter().map(point).collect(), colour, style: LineStyle::Dots }
-        });
-        let plot = LinePlot {
-            title: "errors and error bars",
-            x_label: "log10 of the median error bar",
-            y_label: "log10 of the median error",
-            x: (-6.0, 0.0),
-            y: (-6.0, 0.0),
-            series: series.collect(),
-        };
-        draw_lines(area, &plot, 24.0)
-    }
+    let held = |i: usize| scenes.iter().filter(|bars| bars.holds(i)).count() as f64 / scenes.len() as f64;
+    let of_area = |value: fn(&Bars) -> f64| median(scenes.iter().map(value).collect());
+    let medians = [of_area(|bars| bars.errors[0].abs()), of_area(|bars| bars.bars[0])];
+    let values = (0..QUANTITIES.len()).map(held).chain(medians);
+    [scenes.len().to_string()].into_iter().chain(values.map(|value| number(100.0 * value))).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use rc_figures::write;
-
     use super::*;
 
     #[test]
     fn bars_hold_on_the_quick_set() {
-        let accuracy =
-            Accuracy::compute(&Accuracy::params(Preset::Quick).expect("constants")).expect("solvable scenes");
-        let covered: Vec<_> = accuracy.bars.iter().filter(|bars| bars.is_covered()).collect();
+        let bars = measure(Preset::Quick).expect("solvable scenes");
+        let covered: Vec<_> = bars.iter().filter(|bars| bars.is_covered()).collect();
         // The number of bars that hold may differ from 95 % by four standard errors of independent scenes. Some scenes
         // share a surface, and are not independent.
         let four_errors = 4.0 * (0.05 * 0.95 * covered.len() as f64).sqrt();
-        for (quantity, (name, _)) in QUANTITIES.into_iter().enumerate() {
+        for (quantity, name) in QUANTITIES.into_iter().enumerate() {
             let held = covered.iter().filter(|bars| bars.holds(quantity)).count() as f64;
             let expected = 0.95 * covered.len() as f64;
             assert!((held - expected).abs() < four_errors, "{name}: {held} of {} bars hold", covered.len());
         }
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        assert_eq!(write(&accuracy, folder.path()).expect("the figure is written").len(), 3);
+        let n_strata = bars.len() / 4;
+        assert_eq!(table(&bars).csv.lines().count(), n_strata + 2);
     }
 }

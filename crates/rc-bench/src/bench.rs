@@ -10,7 +10,6 @@ mod markdown;
 mod measure;
 mod peers;
 mod picture;
-mod python;
 mod readings;
 mod record;
 mod reference;
@@ -61,20 +60,10 @@ pub struct Params {
 /// Settings of the other programs.
 #[derive(Clone, Debug)]
 pub struct PeerParams {
-    /// A Python that has the peers. Without it, an environment is made from PyPI when needed.
-    pub python: Option<PathBuf>,
+    /// A Python that has the peers.
+    pub python: PathBuf,
     /// Longest expected solve of a peer (s); longer ones are left out.
     pub seconds: f64,
-}
-
-impl Params {
-    /// The interpreter that has the peers; `None` if they do not take part.
-    ///
-    /// If it cannot be made, the run goes on without peers.
-    fn python(&self) -> Option<PathBuf> {
-        let peers = self.peers.as_ref()?;
-        peers.python.clone().or_else(|| rounds::tell(python::interpreter()))
-    }
 }
 
 /// The scenes with these names, or all scenes if `names` is empty.
@@ -95,13 +84,13 @@ pub fn scenes<T: AsRef<str>>(names: &[T]) -> Result<Vec<Scene>> {
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub fn measure(params: &Params) -> Result<()> {
     let (references, start) = (References::read()?, Instant::now());
-    let python = params.python();
+    let python = params.peers.as_ref().map(|peers| peers.python.as_path());
     let peer_seconds = params.peers.as_ref().map_or(0.0, |peers| peers.seconds);
     let limits = Limits { repeats: params.repeats.max(1), peer_seconds };
     let (mut rows, mut n_failed) = (Vec::<Row>::new(), 0);
     for &scene in &params.scenes {
         // A new process of each peer for each scene, as each of our solves has a new one.
-        let mut peers = Peers::start(python.as_deref(), &PEERS);
+        let mut peers = Peers::start(python, &PEERS);
         let mut cases = rounds::cases(scene, python.is_some());
         n_failed += rounds::run(&mut cases, limits, &mut peers);
         rows.extend(cases.iter().filter_map(Row::of));
@@ -124,7 +113,8 @@ pub fn measure(params: &Params) -> Result<()> {
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub fn measure_scale(params: &Params, quick: bool) -> Result<()> {
     let start = Instant::now();
-    let mut peers = Peers::start(params.python().as_deref(), &[ASPHER]);
+    let python = params.peers.as_ref().map(|peers| peers.python.as_path());
+    let mut peers = Peers::start(python, &[ASPHER]);
     let limits = Limits { repeats: params.repeats.max(1), peer_seconds: f64::INFINITY };
     let (mut rows, mut n_failed) = (Vec::<ScaleRow>::new(), 0);
     for (part, mut cases) in [(Part::Grids, scale::grids(quick)), (Part::Contact, scale::loads(quick))] {

@@ -2,9 +2,6 @@
 //!
 //! They measure time against stated error, how often error bars hold, and hard scenes.
 
+pub mod accuracy;
 pub mod bench;
 pub mod stress;
-
-mod accuracy;
-
-pub use accuracy::Accuracy;
