@@ -52,12 +52,12 @@ struct Stratum {
 struct Bars {
     stratum: Stratum,
     errors: [f64; 3],
-    bars: [f64; 3],
+    widths: [f64; 3],
 }
 
 impl Bars {
     fn holds(&self, quantity: usize) -> bool {
-        self.errors[quantity].abs() <= self.bars[quantity]
+        self.errors[quantity].abs() <= self.widths[quantity]
     }
 
     /// Whether the bars are made for such a surface.
@@ -138,7 +138,7 @@ impl Stratum {
         Ok(Bars {
             stratum: *self,
             errors: std::array::from_fn(|i| values[i] / limits[i] - 1.0),
-            bars: std::array::from_fn(|i| bars[i].map_or(f64::NAN, |bar| bar / limits[i])),
+            widths: std::array::from_fn(|i| bars[i].map_or(f64::NAN, |bar| bar / limits[i])),
         })
     }
 }
@@ -198,7 +198,7 @@ fn table(all: &[Bars]) -> Table {
 fn statistics(scenes: &[Bars]) -> Vec<String> {
     let held = |i: usize| scenes.iter().filter(|bars| bars.holds(i)).count() as f64 / scenes.len() as f64;
     let of_area = |value: fn(&Bars) -> f64| median(scenes.iter().map(value).collect());
-    let medians = [of_area(|bars| bars.errors[0].abs()), of_area(|bars| bars.bars[0])];
+    let medians = [of_area(|bars| bars.errors[0].abs()), of_area(|bars| bars.widths[0])];
     let values = (0..QUANTITIES.len()).map(held).chain(medians);
     [scenes.len().to_string()].into_iter().chain(values.map(|value| number(100.0 * value))).collect()
 }

@@ -108,7 +108,6 @@ mod text_of_tolerance {
 
     use super::{ENERGY, Tolerance, typed};
 
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature that serde asks for")]
     pub(super) fn serialize<S: Serializer>(tolerance: &Tolerance, to: S) -> Result<S::Ok, S::Error> {
         to.serialize_str(&typed(*tolerance))
     }
