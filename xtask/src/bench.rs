@@ -11,8 +11,8 @@ const QUICK: (&[&str], usize, f64) = (&["waves-16", "hurst-0.3-light"], 2, 0.3);
 
 /// Measures run time against the stated error on ten fixed scenes, by every method.
 ///
-/// With --peers it also measures other programs. `data/bench/reference.csv` says which stated errors are true. Run it on an
-/// idle machine. docs/benchmarks.md explains the results.
+/// With --peers it also measures other programs. `data/bench/reference.csv` says which stated errors are true. Run it
+/// on an idle machine. docs/benchmarks.md explains the results.
 #[derive(clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "flags")]
 pub(crate) struct Args {

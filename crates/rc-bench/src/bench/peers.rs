@@ -11,8 +11,8 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use rc_figures::repository;
 use rc_solver::Tolerance;
 
+use super::machine::all_threads;
 use super::measure::Outcome;
-use super::rounds::all_threads;
 use super::setting::CERTIFIED;
 
 /// A peer and its tolerances.

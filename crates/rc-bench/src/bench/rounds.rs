@@ -9,6 +9,7 @@ use rc_figures::repository;
 use rc_solver::Tolerance;
 
 use super::child;
+use super::machine::all_threads;
 use super::measure::Outcome;
 use super::peers::{PEERS, Peer, PeerKind, Question};
 use super::scenes::Scene;
@@ -69,11 +70,6 @@ impl Case {
         let name = |case: &Self| case.peer.map(|kind| case.scene.name.to_owned() + kind.name);
         name(self) == name(other) && self.setting.tolerance == other.setting.tolerance
     }
-}
-
-/// Number of threads that all programs may use.
-pub(super) fn all_threads() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// The cases of a scene on all meshes, ordered by mesh.

@@ -5,9 +5,10 @@
 use rc_solver::Tolerance;
 use serde::{Deserialize, Serialize};
 
+use super::machine::all_threads;
 use super::peers::ASPHER;
 use super::record::{OURS, Spread, rounded};
-use super::rounds::{Case, all_threads};
+use super::rounds::Case;
 use super::scenes::{SCALE_SCENES, SCENES, Scene};
 use super::setting::{CERTIFIED, KernelName, Setting, typed};
 

@@ -1,11 +1,12 @@
 //! Settings of a solve: method, kernel, mesh, tolerance.
 
-use rc_core::Kernel;
-use rc_kernel::{Love, Spectral};
-use serde::{Deserialize, Serialize};
 use std::fmt;
 
+use rc_core::Kernel;
+use rc_kernel::{Love, Spectral};
 use rc_solver::{Method, Tolerance};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::scenes::Scene;
 
@@ -49,7 +50,7 @@ pub(super) struct Setting {
     pub(super) border_level: usize,
     /// Elements of the grid for the shortest wave.
     pub(super) elements_per_wave: usize,
-    #[serde(with = "text_of_tolerance")]
+    #[serde(serialize_with = "write_tolerance", deserialize_with = "read_tolerance")]
     pub(super) tolerance: Tolerance,
 }
 
@@ -102,24 +103,18 @@ pub(super) fn typed(tolerance: Tolerance) -> String {
 /// First word of a tolerance of the energy error.
 const ENERGY: &str = "energy ";
 
-/// A tolerance as the text of [`typed`].
-mod text_of_tolerance {
-    use serde::{Deserialize as _, Deserializer, Serializer, de::Error as _};
+fn write_tolerance<S: Serializer>(tolerance: &Tolerance, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(&typed(*tolerance))
+}
 
-    use super::{ENERGY, Tolerance, typed};
-
-    pub(super) fn serialize<S: Serializer>(tolerance: &Tolerance, to: S) -> Result<S::Ok, S::Error> {
-        to.serialize_str(&typed(*tolerance))
-    }
-
-    pub(super) fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<Tolerance, D::Error> {
-        let text = String::deserialize(from)?;
-        Ok(match text.strip_prefix(ENERGY) {
-            Some(number) => Tolerance::Energy(number.parse().map_err(D::Error::custom)?),
-            None if text == "auto" => Tolerance::Auto,
-            None => Tolerance::Relative(text.parse().map_err(D::Error::custom)?),
-        })
-    }
+/// Reads what [`typed`] writes.
+fn read_tolerance<'a, D: Deserializer<'a>>(from: D) -> Result<Tolerance, D::Error> {
+    let text = String::deserialize(from)?;
+    Ok(match text.strip_prefix(ENERGY) {
+        Some(number) => Tolerance::Energy(number.parse().map_err(D::Error::custom)?),
+        None if text == "auto" => Tolerance::Auto,
+        None => Tolerance::Relative(text.parse().map_err(D::Error::custom)?),
+    })
 }
 
 /// The tolerance of a peer as a number, relative to the peak-to-valley height.
