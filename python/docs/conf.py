@@ -8,7 +8,7 @@ release = version = roughcontact.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 root_doc = "index"
-exclude_patterns = ["extra", "guide/SUMMARY.md"]
+exclude_patterns = ["extra", "guide/SUMMARY.md", "guide/architecture.md"]
 html_extra_path = ["extra"]
 html_theme = "alabaster"
 html_theme_options = {"description": "Contact of rough elastic surfaces", "page_width": "1100px", "sidebar_width": "260px"}

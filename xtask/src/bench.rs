@@ -52,7 +52,7 @@ pub(crate) struct Args {
     /// Instead of measuring: rewrites the tables in the documents, and the picture, from the archived run.
     #[arg(long, group = "instead")]
     tables: bool,
-    /// Instead of measuring: compares counts of operations with the stored counts. A change is an error.
+    /// Instead of measuring: compares counts of operations with the stored counts. Fewer pass, more fail.
     #[arg(long, group = "instead")]
     check: bool,
     /// Instead of measuring: stores the counts of operations.

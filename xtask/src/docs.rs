@@ -69,12 +69,15 @@ fn make_folders_of_crates(documentation: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Copies the guide into `folder`, with links to lines of code in its paper map.
+/// Copies the guide into `folder`, with links to lines of code in its paper map, and ARCHITECTURE.md beside it.
 fn write_chapters(folder: &Path) -> Result<()> {
     let guide = repository::root().join("docs");
     copy_folder(&guide, folder)
         .with_context(|| format!("could not copy {} to {}", guide.display(), folder.display()))?;
     let sources = repository::read_sources(&repository::root())?;
+    // A chapter includes it from the folder above.
+    fs::copy(repository::root().join("ARCHITECTURE.md"), folder.with_file_name("ARCHITECTURE.md"))
+        .context("could not copy ARCHITECTURE.md")?;
     let map = sources.get("docs/paper-map.md").context("docs/paper-map.md is missing; restore it from history")?;
     let path = folder.join("paper-map.md");
     fs::write(&path, links::to_lines(map, &sources)).with_context(|| format!("could not write {}", path.display()))

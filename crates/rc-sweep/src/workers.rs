@@ -14,7 +14,7 @@ type Keep<'a, R> = dyn Fn(&R, Cells) -> Result<(), SweepError> + Sync + 'a;
 ///
 /// After a failure no more rows are begun. A refused row is omitted. Rows are solved in parallel as far as memory
 /// allows. For small surfaces this is faster than all threads on one row, and for large ones it is not slower
-/// (docs/measurements.md).
+/// (docs/constants.md).
 ///
 /// # Errors
 /// The first error of a row, where failures take precedence. The caller sets the counts of [`RunError::Refused`].

@@ -11,7 +11,7 @@ use super::tables::{contact, equal_meshes, grids, machine, sentence, spreads, ti
 use super::times::Results;
 
 /// The documents that have blocks of the benchmark.
-const DOCUMENTS: [&str; 4] = ["README.md", "docs/benchmarks.md", "docs/faq.md", "docs/measurements-adaptive.md"];
+const DOCUMENTS: [&str; 4] = ["README.md", "docs/benchmarks.md", "docs/faq.md", "docs/adaptive-mesh.md"];
 /// The lines of the archived run.
 pub(super) const BENCH: &str = "data/bench/bench.csv";
 /// Description of the machine of the archived run.

@@ -13,7 +13,13 @@ use crate::parallel;
 /// Increase of the energy that counts, relative to the work. Single precision may cause a smaller one.
 const RISE: f64 = 1e-7;
 
-/// Factor of the next steps after a round without a part that lowers the energy, and after one that lowers it.
+/// Part of a round from which its step is not too long.
+///
+/// Between two rounds no element reaches a bound. Long steps of which only small parts lower the energy would therefore
+/// never find the elements at the bounds.
+const ENOUGH: f64 = 0.5;
+
+/// Factor of the next steps after a round of which a small part lowers the energy, and after one that lowers it.
 const SHORTER: f64 = 0.25;
 const LONGER: f64 = 2.0;
 
@@ -36,6 +42,10 @@ impl Descent<'_> {
     pub(crate) fn descending_round(&mut self, sums: &GapSums, observer: &dyn Observer) -> Result<GapSums, Stopped> {
         let before = (self.pressure.clone(), self.gap.clone());
         let zero_gap = self.zero_gap;
+        if self.step_factor < 1.0 {
+            // Directions are conjugate only after a step to the minimum.
+            self.start_afresh();
+        }
         let Ok(after) = self.round(1, sums, observer) else {
             (self.pressure, self.gap) = before;
             return Err(Stopped);
@@ -45,7 +55,7 @@ impl Descent<'_> {
             return Ok(after);
         }
         let part = self.best_part(&before.0, &before.1, zero_gap);
-        if part <= 0.0 {
+        if part < ENOUGH {
             self.step_factor *= SHORTER;
         }
         for (new, old) in [(&mut self.pressure, &before.0), (&mut self.gap, &before.1)] {
@@ -57,10 +67,15 @@ impl Descent<'_> {
             });
         }
         // The last direction does not lead here, and the active elements were chosen elsewhere.
-        self.curvature = f64::INFINITY;
-        self.is_chosen = false;
+        self.start_afresh();
         let sums = self.rescale(1.0);
         Ok(self.meet_penetration(sums))
+    }
+
+    /// Forgets the last direction and the choice of active elements.
+    fn start_afresh(&mut self) {
+        self.curvature = f64::INFINITY;
+        self.is_chosen = false;
     }
 
     /// The part of a round that lowers the energy most, from 0 to 1.

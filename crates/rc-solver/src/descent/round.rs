@@ -24,7 +24,7 @@ struct ActiveSet {
 
 /// Part of the cell in contact above which each step is clipped.
 ///
-/// Elements that join the contact then get a pressure at once. `docs/measurements-uniform.md` compares both rules.
+/// Elements that join the contact then get a pressure at once. `docs/constants.md` compares both rules.
 const HEAVY_CONTACT: f64 = 0.5;
 
 impl Descent<'_> {

@@ -12,7 +12,7 @@ use crate::problem::tolerance::ErrorBound;
 
 /// Conjugate-gradient steps between two clippings.
 ///
-/// `docs/measurements-uniform.md` compares one to three steps.
+/// `docs/constants.md` compares one to three steps.
 const STEPS_PER_ROUND: usize = 2;
 
 /// Rounds without progress after which the iteration gives up.

@@ -9,7 +9,7 @@
 
 /// Minimum number of elements along a side of the smallest squares.
 ///
-/// The number of squares is a power of two. `docs/measurements-uniform.md` compares 8 to 128.
+/// The number of squares is a power of two. `docs/constants.md` compares 8 to 128.
 const SMALLEST_SQUARE: usize = 64;
 
 /// Minimum part of its load that a square keeps after clipping.

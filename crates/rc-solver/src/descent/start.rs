@@ -10,7 +10,7 @@ use crate::problem::control::Control;
 
 /// Factor by which the pressure of a rigid overlap may miss the prescribed load.
 ///
-/// The pressure is then scaled to the load. It is computed at most `MAX_OVERLAPS` times. `docs/measurements-uniform.md`
+/// The pressure is then scaled to the load. It is computed at most `MAX_OVERLAPS` times. `docs/constants.md`
 /// compares these values with others.
 const LOAD_FACTOR: f64 = 1.3;
 const MAX_OVERLAPS: usize = 3;

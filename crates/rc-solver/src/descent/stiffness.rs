@@ -119,7 +119,7 @@ pub(crate) fn search(
 
 /// Part of the cell in contact from which the first direction is the preconditioned residual.
 ///
-/// `docs/measurements-uniform.md` compares it with the pressure.
+/// `docs/constants.md` compares it with the pressure.
 const HEAVY_CONTACT: f64 = 0.5;
 
 /// Directions that begin with the pressure, or with the preconditioned residual in heavy contact.

@@ -2,7 +2,7 @@
 //!
 //! It is the inverse of a periodic cell with a margin around the heights. Outside of the heights the surface is as free
 //! as between contacts, and a residual is extended smoothly over it ([`super::extension`]). A margin is enough, because
-//! the surface farther away matters only to long waves, of which there are few. `docs/uniform-solver.md` has the
+//! the surface farther away matters only to long waves, of which there are few. `docs/constants.md` has the
 //! iterations with and without it.
 
 use rc_core::{Grid, Kernel};

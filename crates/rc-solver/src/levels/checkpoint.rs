@@ -8,10 +8,21 @@ use rc_quadtree::{CELLS, Elements, TILE, TileSet};
 
 use crate::descent::info::{LevelInfo, LevelValues};
 use crate::levels::nested::History;
-use crate::levels::tiles::TileStart;
 use crate::problem::place::Checkpoint;
 use crate::tiles::mesh::Mesh;
 use crate::tiles::prolongation::MeshStart;
+
+/// The start of a level above the base grid.
+pub(crate) struct TileStart {
+    /// The whole grid of the level's smallest elements.
+    pub(crate) grid: Grid,
+    pub(crate) mesh: MeshStart,
+    pub(crate) contact_gap: f64,
+    /// U/σ0 of the level before, in λ.
+    pub(crate) energy_length: f64,
+    /// Part of the cell in tiles of the finest level that the contact of the base grid touches or is next to.
+    pub(crate) tile_fraction: f64,
+}
 
 /// Number of values about a start before those of its levels.
 ///

@@ -22,18 +22,17 @@ const BYTES_PER_CELL: f64 = 80.0;
 
 /// Bytes that each border level adds to a cell, relative to one without.
 ///
-/// They are for the larger cells that every level reaches beyond its own. `docs/measurements-adaptive.md` has the
-/// measured bytes.
+/// They are for the larger cells that every level reaches beyond its own. `docs/constants.md` has the measured bytes.
 const MORE_BYTES_PER_BORDER_LEVEL: f64 = 0.9;
 
 /// Time that each border level adds to a cell, relative to one without.
 ///
-/// `docs/measurements-adaptive.md` has the measured times.
+/// `docs/constants.md` has the measured times.
 const MORE_WORK_PER_BORDER_LEVEL: f64 = 0.8;
 
 /// Factor by which one more border level multiplies the cells of tiles.
 ///
-/// Edges alone would give 2. `docs/measurements-adaptive.md` has the measured factors.
+/// Edges alone would give 2. `docs/constants.md` has the measured factors.
 const GROWTH_PER_BORDER_LEVEL: f64 = 2.6;
 
 /// Bytes for each place of the smallest elements, used or not.
@@ -64,13 +63,13 @@ pub(crate) struct Estimate {
 impl Estimate {
     /// Maximum contact area for the adaptive method.
     ///
-    /// Above it the uniform grid is faster. `docs/measurements-adaptive.md` has the times by contact fraction.
+    /// Above it the uniform grid is faster. `docs/adaptive-mesh.md` has the times by contact fraction.
     pub(crate) const GREATEST_ADAPTIVE_AREA: f64 = 0.35;
 
     /// Maximum fraction of the cell in tiles near contact for the adaptive method.
     ///
     /// Above it the uniform grid is faster. The base grid finds this fraction. The limit was measured on 27 scenes
-    /// (docs/measurements-adaptive.md).
+    /// (docs/constants.md).
     pub(crate) const GREATEST_TILE_FRACTION: f64 = 0.35;
 
     /// `period` has the elements of the base grid that operators work on.

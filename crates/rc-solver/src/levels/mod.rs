@@ -1,5 +1,6 @@
 //! Nested iteration: from the coarsest level to the finest, each of which starts the next.
 
+pub(crate) mod adaptive;
 pub(crate) mod agreed_stop;
 pub(crate) mod base_grid;
 pub(crate) mod checkpoint;

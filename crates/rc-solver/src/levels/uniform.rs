@@ -29,8 +29,8 @@ pub(crate) const FREE_BYTES_PER_ELEMENT: u64 = 180;
 /// Full contact of a periodic cell is returned exactly and without iteration. Otherwise coarser grids, each with about
 /// half the elements per side, prepare the start on the next. On each grid, preconditioned conjugate gradients find the
 /// pressure. The preconditioner is the inverse symbol between two extensions of residuals (see
-/// `docs/uniform-solver.md`, and `docs/measurements-uniform.md` for measurements). The certificate comes from a fresh
-/// application of L, in double precision, on the returned pressure.
+/// `docs/uniform-grid.md`, and `docs/constants.md` for measurements). The certificate comes from a fresh application of
+/// L, in double precision, on the returned pressure.
 ///
 /// The result is bitwise the same for any number of threads.
 ///

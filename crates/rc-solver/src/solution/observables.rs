@@ -178,7 +178,7 @@ const GAP_OVER_AREA: f64 = 0.025;
 
 /// 95 % error of the mean gap from singular pressure at free borders.
 ///
-/// Its unit is the ratio of `Rim::at_border` to the mean pressure. The table is in docs/measurements.md.
+/// Its unit is the ratio of `Rim::at_border` to the mean pressure. The measured values are in docs/constants.md.
 const GAP_AT_BORDER: f64 = 0.7;
 
 /// Estimated error of the mean gap. It is 0 in full contact of a periodic cell and without contact.

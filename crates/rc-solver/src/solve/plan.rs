@@ -7,7 +7,8 @@ use rc_kernel::PeriodicLove;
 
 use crate::descent::info::{GridSolution, Status};
 use crate::grid::solved::{GridSolved, Response};
-use crate::levels::tiles::{TileLevels, Unsuitable};
+use crate::levels::adaptive::Unsuitable;
+use crate::levels::tiles::TileLevels;
 use crate::levels::uniform::solve_uniform;
 use crate::paper::error::GaussSeidelError;
 use crate::paper::half_space::HalfSpace;

@@ -337,3 +337,21 @@ fn pressures_of_the_order_of_e_star_take_no_more_iterations() {
         }
     }
 }
+
+/// In long cells a small change of the load of one place displaces everything, and steps may be far too long.
+#[test]
+fn long_cells_with_a_hardness_converge() {
+    let ratio = 64;
+    let grid = Grid::in_cell(32, 32 * ratio, ratio as f64).expect("a grid");
+    for seed in 0..3 {
+        let height =
+            |(at, i): (f64, usize)| 0.035 * quasi_random(i * i * 101 + seed * i) + 0.02 * (3.0 * TAU * at).sin();
+        let along = |i: usize| (i / grid.nx()) as f64 / grid.ny() as f64;
+        let heights = Field::new(grid, (0..grid.len()).map(|i| height((along(i), i))).collect()).expect("a field");
+        let range = heights.max() - heights.min();
+        for control in [Control::MeanPressure(0.09), Control::MeanPressure(0.03), Control::Penetration(0.5 * range)] {
+            let solution = solve(&heights, control, 0.1, &SolveParams::default()).expect("it converges");
+            assert!(solution.observables().plastic.expect("hard").fraction > 0.0, "{control:?}, {seed}");
+        }
+    }
+}

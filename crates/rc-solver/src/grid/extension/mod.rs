@@ -10,7 +10,7 @@
 //! number of scales. Here u between contacts is interpolated from means over squares of 2, 4, 8, … elements. A square
 //! counts as far as its elements are active.
 //!
-//! `docs/measurements-uniform.md` has the iterations with and without the extension.
+//! `docs/constants.md` has the iterations with and without the extension.
 
 pub(crate) mod pyramid;
 pub(crate) mod rows;

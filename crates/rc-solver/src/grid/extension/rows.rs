@@ -28,7 +28,7 @@ impl Parts {
         let blocks = self.own.chunks_mut(TASK).zip(self.rest.chunks_mut(TASK)).zip(parts.chunks(TASK));
         parallel::for_each(blocks, |((own, rest), parts)| {
             for ((own, rest), &x) in own.iter_mut().zip(rest).zip(parts) {
-                // `docs/measurements-uniform.md` compares x^(3/4) with other powers.
+                // `docs/constants.md` compares x^(3/4) with other powers.
                 let part = x.sqrt() * x.sqrt().sqrt();
                 // The mean over all elements is x times the mean over the active ones.
                 [*own, *rest] = if x > 0.0 { [part / x, 1.0 - part] } else { [0.0, 1.0] };

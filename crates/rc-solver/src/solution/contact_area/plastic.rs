@@ -29,7 +29,7 @@ pub struct PlasticContact {
 /// Those for its plastic part are below. With the plastic part x of the contact area, the bar of the area is 1 +
 /// `WIDER_CONTACT` x² times that of an elastic contact. The bar of the plastic part is a linear function of x times its
 /// own. The elastic rim of a plastic contact may be thinner than an element. Its edges are then located less
-/// accurately. `docs/hardness.md` has the measurements.
+/// accurately. `docs/other-solids.md` has the measurements.
 const WIDER_CONTACT: f64 = 2.7;
 const WIDER_PLASTIC: [f64; 2] = [1.2, 3.3];
 
