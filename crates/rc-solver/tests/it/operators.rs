@@ -36,8 +36,11 @@ fn fft_operator_matches_direct_sum_on_non_square_grids() {
     }
 }
 
+/// A change of displacements.
+type Fault = fn(&mut [f64]);
+
 /// An operator whose displacements a function changes.
-struct Faulty(UniformOperator, fn(&mut [f64]));
+struct Faulty(UniformOperator, Fault);
 
 impl Operator for Faulty {
     fn n_elements(&self) -> usize {
@@ -57,7 +60,7 @@ impl Operator for Faulty {
 /// The check that forks run on their operators finds faults.
 #[test]
 fn the_contract_finds_faults() {
-    let faults: [(&str, fn(&mut [f64])); 6] = [
+    let faults: [(&str, Fault); 6] = [
         ("NaN", |v| v[17] = f64::NAN),
         ("wrong sign", |v| v.iter_mut().for_each(|v| *v = -*v)),
         ("shifted by an element", |v| v.rotate_right(1)),
