@@ -12,7 +12,7 @@ test:
 ci:
     cargo xtask ci
 
-# Arrows, paper map, snapshots, culture.
+# Arrows, paper map, snapshots, links.
 tidy:
     cargo xtask tidy
 

@@ -1,14 +1,7 @@
-//! Every reader of height maps. The first byte chooses the format.
+//! Every reader of height maps.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-use rc_heights::{Format, parse};
+#[path = "../targets/heights.rs"]
+mod heights;
 
-fuzz_target!(|data: &[u8]| {
-    if let Some((first, bytes)) = data.split_first() {
-        let format = Format::ALL[usize::from(*first) % Format::ALL.len()];
-        if let Err(error) = parse(bytes, format) {
-            assert!(!error.to_string().is_empty());
-        }
-    }
-});
+libfuzzer_sys::fuzz_target!(|data: &[u8]| heights::run(data));

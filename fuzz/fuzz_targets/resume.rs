@@ -1,12 +1,7 @@
-//! Journals of sweeps, from which `rc sweep --resume` goes on.
+//! Journals of sweeps.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-use rc_sweep::finished_rows;
+#[path = "../targets/resume.rs"]
+mod resume;
 
-fuzz_target!(|data: &[u8]| {
-    match finished_rows(data) {
-        Ok(rows) => assert!(rows <= data.len()),
-        Err(error) => assert!(!error.to_string().is_empty()),
-    }
-});
+libfuzzer_sys::fuzz_target!(|data: &[u8]| resume::run(data));

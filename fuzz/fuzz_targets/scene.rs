@@ -1,18 +1,7 @@
-//! Scene files. A scene that parses is resolved as well; other input must give one line.
+//! Scene files.
 #![no_main]
 
-use libfuzzer_sys::fuzz_target;
-use rc_cli::scene::{file, resolve};
-use rc_core::PeriodicCell;
+#[path = "../targets/scene.rs"]
+mod scene;
 
-fuzz_target!(|text: &str| {
-    match file::parse(text) {
-        Ok(mut scene) => {
-            // Files of the machine must not take part.
-            scene.surface.heights = None;
-            let _ = resolve::surface(scene.surface);
-            let _ = resolve::contact(scene.contact, PeriodicCell::new(1.0).expect("a cell"));
-        }
-        Err(message) => assert!(!message.is_empty()),
-    }
-});
+libfuzzer_sys::fuzz_target!(|data: &[u8]| scene::run(data));

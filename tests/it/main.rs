@@ -11,6 +11,7 @@ mod free;
 mod free_adaptive;
 mod front_door;
 mod full_contact;
+mod fuzz;
 mod gauss_seidel;
 mod hardness;
 mod hertz;

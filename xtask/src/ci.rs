@@ -2,33 +2,35 @@
 
 use anyhow::Result;
 
-use crate::process::Step;
+use crate::process::{cargo, path_of, run as run_step};
+use crate::{docs, mpi, slurm, swap, test};
 
-/// Checks format, lints, documentation and tests as continuous integration does.
+/// Checks format, lints, documentation, dependencies and tests as continuous integration does.
 ///
-/// It also swaps crates for forks and tries the Python package. It stops at the first failure. The script `.ci/run` has
-/// the same steps.
+/// It also swaps crates for forks, and runs on Slurm and MPI where they are. It stops at the first failure.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
-/// The steps, cheapest first. The script `.ci/run` must have the same lines, which `cargo xtask tidy` checks.
-pub(crate) const STEPS: &[Step] = &[
-    Step { environment: &[], words: &["fmt", "--all", "--check"] },
-    Step {
-        environment: &[],
-        words: &["clippy", "--release", "--workspace", "--all-targets", "--all-features", "--", "-D", "warnings"],
-    },
-    Step {
-        environment: &[("RUSTDOCFLAGS", "-D warnings")],
-        words: &["doc", "--release", "--workspace", "--no-deps", "--all-features"],
-    },
-    Step { environment: &[], words: &["xtask", "test"] },
-    Step { environment: &[], words: &["xtask", "swap"] },
-    Step { environment: &[], words: &["xtask", "python"] },
-    Step { environment: &[], words: &["xtask", "slurm"] },
-    Step { environment: &[], words: &["xtask", "mpi"] },
-];
+const CLIPPY: [&str; 8] =
+    ["clippy", "--release", "--workspace", "--all-targets", "--all-features", "--", "-D", "warnings"];
 
 pub(crate) fn run(_args: &Args) -> Result<()> {
-    STEPS.iter().try_for_each(|step| step.run(&[]))
+    run_step(&mut cargo(&["fmt", "--all", "--check"]))?;
+    run_step(&mut cargo(&CLIPPY))?;
+    docs::document_crates()?;
+    check_dependencies()?;
+    test::run(&test::Args::default())?;
+    swap::run(&swap::Args {})?;
+    slurm::run(&slurm::Args {})?;
+    mpi::run(&mpi::Args {})
+}
+
+/// Checks licences, sources and versions of dependencies by `deny.toml`.
+#[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
+fn check_dependencies() -> Result<()> {
+    if path_of("cargo-deny").is_none() {
+        eprintln!("deny: skipped, there is no cargo-deny here (cargo install cargo-deny --locked)");
+        return Ok(());
+    }
+    run_step(&mut cargo(&["deny", "--workspace", "--all-features", "check", "licenses", "sources", "bans"]))
 }

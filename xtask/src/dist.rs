@@ -1,68 +1,83 @@
-//! `cargo xtask dist`: the binary for distribution.
+//! `cargo xtask dist`: the files of a release.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
+use std::{env, fs};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, ensure};
 use rc_figures::repository;
 
-use crate::process::Step;
+use crate::process::{cargo, program, run as run_step};
+use crate::wheel;
 
-/// Builds the stripped binary `rc` and prints its place and size.
+/// Makes the files that a person uploads for a release, in target/dist.
 ///
-/// The binary is static if the musl target of this machine is installed.
+/// They are the stripped binary `rc`, the wheel and the sources of the Python package, the release notes from
+/// CHANGELOG.md, and the check sums of all. The binary is static if the musl target of this machine is installed.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Another profile of cargo, for instance dev, to try this command quickly
+    /// Makes only the binary
+    #[arg(long)]
+    binary: bool,
+    /// Another profile of cargo, for instance release, to try this command quickly
     #[arg(long, default_value = "dist")]
     profile: String,
 }
 
-const BUILD: Step = Step { environment: &[], words: &["build", "-p", "rc-cli", "--bin", "rc"] };
-
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub(crate) fn run(args: &Args) -> Result<()> {
-    let target = musl_target()?;
-    let mut words = vec!["--profile".to_owned(), args.profile.clone()];
-    if let Some(target) = &target {
-        words.extend(["--target".to_owned(), target.clone()]);
+    let out = repository::target().join("dist");
+    let _ = fs::remove_dir_all(&out);
+    fs::create_dir_all(&out).with_context(|| format!("could not make {}", out.display()))?;
+    let version = build_binary(&args.profile, &out.join("rc"))?;
+    if !args.binary {
+        wheel::build(&out, &[wheel::WHEEL, wheel::SDIST])?;
+        let changes = fs::read_to_string(repository::root().join("CHANGELOG.md")).context("CHANGELOG.md")?;
+        let notes = section(&changes, &version).or_else(|| section(&changes, "Unreleased"));
+        fs::write(out.join("NOTES.md"), notes.context("CHANGELOG.md has no section of this version")?)?;
     }
-    BUILD.run(&words)?;
-    let binary = binary(&repository::target(), target.as_deref(), &args.profile);
-    let bytes = binary.metadata().with_context(|| format!("no binary at {}", binary.display()))?.len();
-    let version = Command::new(&binary).arg("--version").output().context("the binary does not start")?;
-    if !version.status.success() {
-        bail!("{} --version failed", binary.display());
-    }
-    let kind = if target.is_some() { "static" } else { "needs the C library of this machine" };
-    println!("{}: {:.1} MB, {kind}", binary.display(), bytes as f64 / 1e6);
-    println!("{}", String::from_utf8_lossy(&version.stdout).trim());
-    if let (None, Some(name)) = (&target, musl_name()) {
-        println!("static after `rustup target add {name}`");
-    }
+    let sums = "sha256sum * > SHA256SUMS && cat SHA256SUMS";
+    run_step(program("sh", &["-c", sums]).current_dir(&out))?;
+    println!("{}: version {version}", out.display());
     Ok(())
 }
 
-/// Name of this machine's musl target; `None` if the system is not Linux.
-fn musl_name() -> Option<String> {
-    (std::env::consts::OS == "linux").then(|| format!("{}-unknown-linux-musl", std::env::consts::ARCH))
+/// Builds the binary at `path`, and returns the version that it prints.
+#[expect(clippy::print_stdout, reason = "the result of the command")]
+fn build_binary(profile: &str, path: &Path) -> Result<String> {
+    let target = musl_target()?;
+    let mut build = cargo(&["build", "--package", "rc-cli", "--bin", "rc", "--profile", profile]);
+    build.args(target.iter().flat_map(|target| ["--target", target]));
+    run_step(&mut build)?;
+    let built = repository::target().join(target.as_deref().unwrap_or_default()).join(profile).join("rc");
+    let bytes = fs::copy(&built, path).with_context(|| format!("no binary at {}", built.display()))?;
+    let output = Command::new(path).arg("--version").output().context("the binary does not start")?;
+    ensure!(output.status.success(), "{} --version failed", path.display());
+    let kind = if target.is_some() { "static" } else { "needs the C library of this machine" };
+    println!("{}: {:.1} MB, {kind}", path.display(), bytes as f64 / 1e6);
+    if target.is_none() {
+        println!("static after `rustup target add {}`", musl_name());
+    }
+    let text = String::from_utf8_lossy(&output.stdout);
+    Ok(text.split_whitespace().last().unwrap_or_default().to_owned())
+}
+
+fn musl_name() -> String {
+    format!("{}-unknown-linux-musl", env::consts::ARCH)
 }
 
 /// The musl target of this machine, if its standard library is installed.
 fn musl_target() -> Result<Option<String>> {
-    let Some(name) = musl_name() else { return Ok(None) };
-    let rustc = Command::new("rustc").args(["--print", "target-libdir", "--target", &name]).output();
-    let folder = rustc.context("could not start rustc")?;
-    let folder = String::from_utf8_lossy(&folder.stdout).trim().to_owned();
-    Ok((!folder.is_empty() && Path::new(&folder).is_dir()).then_some(name))
+    let rustc = program("rustc", &["--print", "target-libdir", "--target", &musl_name()]).output();
+    let folder = String::from_utf8_lossy(&rustc.context("could not start rustc")?.stdout).trim().to_owned();
+    Ok((!folder.is_empty() && Path::new(&folder).is_dir()).then(musl_name))
 }
 
-/// Path of the binary that cargo builds.
-fn binary(folder: &Path, target: Option<&str>, profile: &str) -> PathBuf {
-    let folder = target.map_or_else(|| folder.to_path_buf(), |target| folder.join(target));
-    // Cargo's folder of the profile `dev` has another name, for historical reasons.
-    let profile = if profile == "dev" { "debug" } else { profile };
-    folder.join(profile).join("rc").with_extension(std::env::consts::EXE_EXTENSION)
+/// The section of a version in the change log, without its heading.
+fn section<'a>(changes: &'a str, version: &str) -> Option<&'a str> {
+    let (_, after) = changes.split_once(&format!("\n## [{version}]"))?;
+    let text = after.split_once('\n')?.1;
+    Some(text.split("\n## [").next().unwrap_or(text).trim())
 }
 
 #[cfg(test)]
@@ -70,10 +85,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_binary_is_where_cargo_puts_it() {
-        let name = format!("rc{}", std::env::consts::EXE_SUFFIX);
-        let path = |target, profile| binary(Path::new("target"), target, profile);
-        assert_eq!(path(None, "dev"), Path::new("target/debug").join(&name));
-        assert_eq!(path(Some("a-b-c"), "dist"), Path::new("target/a-b-c/dist").join(&name));
+    fn the_notes_are_the_section_of_the_version() {
+        let changes = "# Changelog\n\n## [Unreleased]\n\n- New.\n\n## [0.1.0] - 2026-01-01\n\n- First.\n";
+        assert_eq!(section(changes, "0.1.0"), Some("- First."));
+        assert_eq!(section(changes, "Unreleased"), Some("- New."));
+        assert_eq!(section(changes, "0.2.0"), None);
     }
 }

@@ -1,4 +1,4 @@
-//! `cargo xtask fig1` to `fig8`, `figures` and `reproduction`.
+//! `cargo xtask fig1` to `fig8`, `figures`, `reproduction` and `guide-figures`.
 //!
 //! Other commands that write tables with a picture are here too.
 
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use rc_figures::all::{self, Archive};
-use rc_figures::{Figure, Preset, repository, reproduction};
+use rc_figures::{Figure, Preset, guide, repository, reproduction};
 
 /// Folder and size of a figure.
 #[derive(clap::Args)]
@@ -29,6 +29,11 @@ impl Args {
 /// Computes one figure and writes it.
 pub(crate) fn run<F: Figure>(args: &Args) -> Result<()> {
     rc_figures::run::<F>(args.preset(), &args.out)
+}
+
+/// Draws the figures of the guide.
+pub(crate) fn run_guide(args: &Args) -> Result<()> {
+    guide::write_all(args.preset(), &args.out)
 }
 
 /// Draws every figure of the paper.

@@ -7,7 +7,6 @@ mod dist;
 mod docs;
 mod figures;
 mod gfmd;
-mod guide_figures;
 mod mpi;
 mod process;
 mod python;
@@ -57,7 +56,8 @@ enum Command {
     Figures(figures::AllArgs),
     Reproduction(figures::ReproductionArgs),
     Gfmd(gfmd::Args),
-    GuideFigures(guide_figures::Args),
+    /// Draws the figures of the guide: mesh, kernel split, one V of levels, start of a level; also into docs/images/
+    GuideFigures(figures::Args),
     Challenge(challenge::Args),
     /// Measures how often the error bars of area, rms pressure and mean gap hold
     Accuracy(figures::Args),
@@ -89,7 +89,7 @@ fn main() -> anyhow::Result<()> {
         Command::Figures(args) => figures::run_all(&args),
         Command::Reproduction(args) => figures::run_reproduction(&args),
         Command::Gfmd(args) => gfmd::run(&args),
-        Command::GuideFigures(args) => guide_figures::run(&args),
+        Command::GuideFigures(args) => figures::run_guide(&args),
         Command::Challenge(args) => challenge::run(&args),
         Command::Accuracy(args) => accuracy::run(args.preset(), &args.out),
         Command::Bench(args) => bench::run(&args),

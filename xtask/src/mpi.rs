@@ -4,13 +4,12 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
 use rc_figures::repository;
 use serde_json::{Map, Value};
 
-use crate::process::{Step, path_of};
+use crate::process::{cargo, path_of, run as run_step, wait};
 
 /// Builds rc-mpi, compares its results with those of `rc solve`, and kills a rank.
 ///
@@ -23,40 +22,13 @@ pub(crate) struct Args {}
 const PROGRAMS: [&str; 3] = ["mpirun", "mpicc", "clang"];
 
 /// The scenes, one for each control, of about a second each.
-const SCENES: [[&str; 8]; 2] = [
-    [
-        "solve",
-        "--waves=64",
-        "--grid=1024",
-        "--pressure=446395",
-        "--method=adaptive",
-        "--tolerance=1e-6",
-        "--quiet",
-        "--threads=1",
-    ],
-    [
-        "solve",
-        "--waves=64",
-        "--grid=1024",
-        "--penetration=14e-6",
-        "--method=adaptive",
-        "--tolerance=1e-6",
-        "--quiet",
-        "--threads=1",
-    ],
-];
+const SCENES: [&str; 2] = ["--grid=1024 --pressure=446395", "--grid=1024 --penetration=14e-6"];
 
 /// The scene that loses a rank. Its last level takes some seconds.
-const LONG: [&str; 8] = [
-    "solve",
-    "--waves=64",
-    "--grid=4096",
-    "--pressure=446395",
-    "--method=adaptive",
-    "--tolerance=1e-6",
-    "--quiet",
-    "--threads=1",
-];
+const LONG: &str = "--grid=4096 --pressure=446395";
+
+/// Flags of every scene.
+const COMMON: &str = "--waves=64 --method=adaptive --tolerance=1e-6 --quiet --threads=1";
 
 /// Files that are compared byte by byte.
 const FILES: [&str; 5] = ["pressure.npy", "gap.npy", "elements.csv", "contact.png", "scene.toml"];
@@ -74,9 +46,6 @@ const ENVIRONMENT: [(&str, &str); 4] = [
     ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"),
 ];
 
-/// Time after which the run counts as failed.
-const PATIENCE: Duration = Duration::from_secs(300);
-
 #[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
 pub(crate) fn run(_args: &Args) -> Result<()> {
     if let Some(missing) = PROGRAMS.iter().find(|program| path_of(program).is_none()) {
@@ -85,21 +54,20 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
         );
         return Ok(());
     }
-    let root = repository::root();
-    Step { environment: &[], words: &["build", "--release", "--package", "rc-cli"] }.run(&[])?;
+    run_step(&mut cargo(&["build", "--release", "--package", "rc-cli"]))?;
     // A common folder lets both builds share their crates.
-    let target = format!("--target-dir={}", root.join("target").display());
-    Step { environment: &[], words: &["build", "--release"] }.run_in(&root.join("mpi"), &[target])?;
+    let build = ["build", "--release", "--manifest-path", "mpi/Cargo.toml", "--target-dir"];
+    run_step(cargo(&build).arg(repository::target()))?;
     let folder = tempfile::tempdir()?;
-    let programs = Programs { target: root.join("target/release"), folder: folder.path().to_owned() };
+    let programs = Programs { target: repository::target().join("release"), folder: folder.path().to_owned() };
     for scene in SCENES {
-        programs.solve(&scene, "alone")?;
+        programs.solve(scene, "alone")?;
         for ranks in [1, 2, 4] {
             let out = format!("ranks-{ranks}");
-            ensure!(programs.mpirun(ranks, &scene, &["--out", &out]).status()?.success(), "{ranks} ranks failed");
+            ensure!(programs.mpirun(ranks, scene, &["--out", &out]).status()?.success(), "{ranks} ranks failed");
             programs.compare("alone", &out)?;
         }
-        eprintln!("mpi: {}: 1, 2 and 4 ranks give the files of one process, byte by byte", scene[3]);
+        eprintln!("mpi: {scene}: 1, 2 and 4 ranks give the files of one process, byte by byte");
     }
     lose_a_rank(&programs)?;
     eprintln!("mpi: 3 ranks of which one was killed, then 2 ranks from the last level, give the files of one process");
@@ -109,28 +77,25 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
 /// Kills one of three ranks when the finest level has begun, and continues with two.
 fn lose_a_rank(programs: &Programs) -> Result<()> {
     let words = ["--out", "resumed", "--checkpoint", "levels"];
-    programs.solve(&LONG, "alone")?;
-    let mut run = programs.mpirun(3, &LONG, &words).stderr(Stdio::null()).spawn()?;
+    programs.solve(LONG, "alone")?;
+    let mut run = programs.mpirun(3, LONG, &words).stderr(Stdio::null()).spawn()?;
     let checkpoint = programs.folder.join("levels");
-    let started = Instant::now();
-    // The base grid has 256 elements per side, so four levels are kept before the finest.
-    let mut kept = 0;
-    let mut last = None;
-    while kept < 3 {
-        ensure!(started.elapsed() < PATIENCE, "no checkpoint after {} s", PATIENCE.as_secs());
+    let (mut kept, mut last) = (0, None);
+    wait("third checkpoint", || {
         ensure!(run.try_wait()?.is_none(), "the run has ended before its checkpoint");
         let written = checkpoint.metadata().and_then(|file| file.modified()).ok();
         if written.is_some() && written != last {
             (kept, last) = (kept + 1, written);
         }
-        std::thread::sleep(Duration::from_millis(5));
-    }
+        // The base grid has 256 elements per side, so four levels are kept before the finest.
+        Ok(kept == 3)
+    })?;
     let pid = std::fs::read_to_string(programs.folder.join("pid-1"))?;
     let killed = Command::new("kill").args(["-KILL", pid.trim()]).status()?;
     ensure!(killed.success(), "rank 1 was faster than the kill");
     ensure!(!run.wait()?.success(), "a run that has lost a rank does not end well");
     ensure!(!programs.folder.join("resumed/summary.json").exists(), "a run that has lost a rank has no result");
-    ensure!(programs.mpirun(2, &LONG, &words).status()?.success(), "the run does not go on");
+    ensure!(programs.mpirun(2, LONG, &words).status()?.success(), "the run does not go on");
     ensure!(!checkpoint.exists(), "the checkpoint is removed when the result is there");
     programs.compare("alone", "resumed")
 }
@@ -142,21 +107,21 @@ struct Programs {
 }
 
 impl Programs {
-    fn solve(&self, scene: &[&str], out: &str) -> Result<()> {
-        let status =
-            Command::new(self.target.join("rc")).args(scene).args(["--out", out]).current_dir(&self.folder).status()?;
-        ensure!(status.success(), "rc {} failed", scene.join(" "));
+    fn solve(&self, scene: &str, out: &str) -> Result<()> {
+        let mut command = Command::new(self.target.join("rc"));
+        command.args(words_of(scene)).args(["--out", out]).current_dir(&self.folder);
+        ensure!(command.status()?.success(), "rc solve {scene} failed");
         Ok(())
     }
 
     /// A command that solves the scene over `ranks` ranks.
     ///
     /// Each rank writes its process id.
-    fn mpirun(&self, ranks: usize, scene: &[&str], more: &[&str]) -> Command {
+    fn mpirun(&self, ranks: usize, scene: &str, more: &[&str]) -> Command {
         let mut command = Command::new("mpirun");
         let note = "echo $$ > pid-${OMPI_COMM_WORLD_RANK:-${PMI_RANK:-0}}; exec \"$0\" \"$@\"";
         command.args(["-n", &ranks.to_string(), "sh", "-c", note]).arg(self.target.join("rc-mpi"));
-        command.args(scene).args(more).envs(ENVIRONMENT).current_dir(&self.folder);
+        command.args(words_of(scene)).args(more).envs(ENVIRONMENT).current_dir(&self.folder);
         command
     }
 
@@ -180,6 +145,11 @@ impl Programs {
         summary.retain(|key, _| !OF_THE_RUN.contains(&key.as_str()));
         Ok(summary)
     }
+}
+
+/// Arguments of `rc` for a scene.
+fn words_of(scene: &str) -> impl Iterator<Item = &str> {
+    ["solve"].into_iter().chain(COMMON.split(' ')).chain(scene.split(' '))
 }
 
 fn read(path: &Path) -> Result<Vec<u8>> {

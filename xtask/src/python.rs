@@ -2,18 +2,18 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 use anyhow::{Context, Result, bail};
 use rc_figures::repository;
 
-use crate::process::Program;
+use crate::process::{program, run as run_step};
 
 /// Builds, installs and tests the Python package in an environment in target/python.
 ///
 /// It runs tests, type checks, examples and notebooks. It needs Python 3.11 or newer: `python3`, or the one in the
 /// variable PYTHON. Without it the command says so and succeeds (Debian: python3-venv).
-#[derive(clap::Args)]
+#[derive(clap::Args, Default)]
 pub(crate) struct Args {
     /// Builds the documentation into target/python/site instead, with the notebooks and the guide
     #[arg(long)]
@@ -26,107 +26,89 @@ pub(crate) struct Args {
 /// Packages with versions for tests, type checks, notebooks and documentation.
 const REQUIREMENTS: &str = "python/requirements-test.txt";
 
-#[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
 pub(crate) fn run(args: &Args) -> Result<()> {
-    let python = chosen_python();
-    if !is_usable(&python) {
+    let Some(python) = usable_python() else { return Ok(()) };
+    let python = environment(&python)?;
+    install_package(&python)?;
+    if args.docs {
+        return documentation(&python);
+    }
+    run_step(&mut program(&python, &["-m", "mypy", "--strict", "python/examples", "python/roughcontact"]))?;
+    run_step(program(&python, &["-m", "pytest", "-q"]).args(&args.pytest))
+}
+
+/// The Python that makes environments. Without one that can, a line says so.
+#[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
+pub(crate) fn usable_python() -> Option<String> {
+    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
+    let mut call = program(&python, &["-c", "import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))"]);
+    call.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    let is_usable = call.status().is_ok_and(|status| status.success());
+    if !is_usable {
         eprintln!(
             "python: skipped, {python} is no Python from 3.11 on with venv (Debian: apt-get install python3-venv; another \
              one is named in the variable PYTHON)"
         );
-        return Ok(());
     }
-    let environment = Environment::new()?;
-    environment.install_package()?;
-    if args.docs {
-        return documentation(&environment);
-    }
-    environment.python(&["-m", "mypy", "--strict", "python/examples", "python/roughcontact"]).run()?;
-    let words: Vec<&str> = ["-m", "pytest", "-q"].into_iter().chain(args.pytest.iter().map(String::as_str)).collect();
-    environment.python(&words).run()
+    is_usable.then_some(python)
 }
 
-/// The Python that makes environments.
-fn chosen_python() -> String {
-    std::env::var("PYTHON").unwrap_or_else(|_| "python3".into())
+/// The Python of the environment for tests, which is made at the first use and when the requirements change.
+fn environment(python: &str) -> Result<PathBuf> {
+    let wanted = fs::read_to_string(repository::root().join(REQUIREMENTS)).context(REQUIREMENTS)?;
+    let mark = folder().join("environment/requirements.txt");
+    if fs::read_to_string(&mark).is_ok_and(|installed| installed == wanted) {
+        return Ok(folder().join("environment/bin/python"));
+    }
+    let python = new_environment(python, "environment", &["--requirement", REQUIREMENTS])
+        .context("packages for Python could not be installed; with PYTHON=none the tests of Python are left out")?;
+    fs::write(mark, wanted)?;
+    Ok(python)
 }
 
-/// Whether this program is a Python that can make the environment.
-fn is_usable(python: &str) -> bool {
-    let check = "import ensurepip, sys, venv; sys.exit(sys.version_info < (3, 11))";
-    let mut call = Command::new(python);
-    call.args(["-c", check]).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    call.status().is_ok_and(|status| status.success())
+/// The Python of a new virtual environment in target/python, with packages from PyPI.
+pub(crate) fn new_environment(python: &str, name: &str, packages: &[&str]) -> Result<PathBuf> {
+    let environment = folder().join(name);
+    run_step(program(python, &["-m", "venv", "--clear"]).arg(&environment))?;
+    let python = environment.join("bin/python");
+    run_step(program(&python, &["-m", "pip", "install", "--quiet"]).args(packages))?;
+    Ok(python)
 }
 
-/// A virtual environment in the folder of build results.
-struct Environment {
-    folder: PathBuf,
-}
-
-impl Environment {
-    /// The environment, which is made at the first use and when the requirements change.
-    fn new() -> Result<Self> {
-        let folder = folder().join("environment");
-        let environment = Self { folder };
-        let wanted = fs::read_to_string(repository::root().join(REQUIREMENTS)).context(REQUIREMENTS)?;
-        let mark = environment.folder.join("requirements.txt");
-        if fs::read_to_string(&mark).is_ok_and(|installed| installed == wanted) {
-            return Ok(environment);
-        }
-        let python = chosen_python();
-        let folder = path_text(&environment.folder)?;
-        Program::new(python, &["-m", "venv", "--clear", folder]).run()?;
-        environment.python(&["-m", "pip", "install", "--quiet", "--requirement", REQUIREMENTS]).run()?;
-        fs::write(&mark, wanted)?;
-        Ok(environment)
-    }
-
-    /// Builds the wheel in cargo's folder of build results, and installs it.
-    fn install_package(&self) -> Result<()> {
-        let wheels = folder().join("wheels");
-        // Another wheel there could be mistaken for the new one.
-        let _ = fs::remove_dir_all(&wheels);
-        let out = path_text(&wheels)?;
-        self.python(&["-m", "maturin", "build", "--release", "--locked", "--quiet", "--out", out]).run()?;
-        let wheel = only_wheel(&wheels)?;
-        let install = ["-m", "pip", "install", "--quiet", "--no-deps", "--force-reinstall", path_text(&wheel)?];
-        self.python(&install).run()
-    }
-
-    /// A call of the environment's Python.
-    fn python(&self, words: &[&str]) -> Program {
-        Program::new(in_environment(&self.folder, "python"), words)
-    }
+/// Builds the wheel in cargo's folder of build results, and installs it.
+fn install_package(python: &Path) -> Result<()> {
+    let wheels = folder().join("wheels");
+    // Another wheel there could be mistaken for the new one.
+    let _ = fs::remove_dir_all(&wheels);
+    let build = ["-m", "maturin", "build", "--release", "--locked", "--quiet", "--out"];
+    run_step(program(python, &build).arg(&wheels))?;
+    let install = ["-m", "pip", "install", "--quiet", "--no-deps", "--force-reinstall"];
+    run_step(program(python, &install).arg(only_wheel(&wheels)?))
 }
 
 /// Builds the documentation from docstrings, guide and notebooks with Sphinx.
-fn documentation(environment: &Environment) -> Result<()> {
+fn documentation(python: &Path) -> Result<()> {
     let (source, site) = (folder().join("source"), folder().join("site"));
     for old in [&source, &site] {
         let _ = fs::remove_dir_all(old);
     }
-    let root = repository::root();
-    copy_files(&root.join("python/docs"), &source)?;
-    copy_files(&root.join("docs"), &source.join("guide"))?;
-    copy_files(&root.join("docs/images"), &source.join("guide/images"))?;
     let notebooks = source.join("extra/notebooks");
-    copy_files(&root.join("python/notebooks"), &notebooks)?;
-    let pattern = format!("{}/*.ipynb", path_text(&notebooks)?);
-    environment.python(&["-m", "nbconvert", "--execute", "--to", "html", "--log-level", "WARN", &pattern]).run()?;
-    let words = ["-m", "sphinx", "-q", "-W", "--keep-going", path_text(&source)?, path_text(&site)?];
-    environment.python(&words).run()
+    for (from, to) in [
+        ("python/docs", source.clone()),
+        ("docs", source.join("guide")),
+        ("docs/images", source.join("guide/images")),
+        ("python/notebooks", notebooks.clone()),
+    ] {
+        copy_files(&repository::root().join(from), &to)?;
+    }
+    let convert = ["-m", "nbconvert", "--execute", "--to", "html", "--log-level", "WARN"];
+    run_step(program(python, &convert).arg(notebooks.join("*.ipynb")))?;
+    run_step(program(python, &["-m", "sphinx", "-q", "-W", "--keep-going"]).args([source, site]))
 }
 
 /// Folder of all build results of Python.
 pub(crate) fn folder() -> PathBuf {
     repository::target().join("python")
-}
-
-/// Path of a program in a virtual environment.
-pub(crate) fn in_environment(environment: &Path, name: &str) -> PathBuf {
-    let programs = if cfg!(windows) { "Scripts" } else { "bin" };
-    environment.join(programs).join(name).with_extension(std::env::consts::EXE_EXTENSION)
 }
 
 /// Path of the only wheel in `folder`.
@@ -143,33 +125,14 @@ pub(crate) fn only_wheel(folder: &Path) -> Result<PathBuf> {
     }
 }
 
-/// A path as an argument of a command.
-///
-/// # Errors
-/// When it is not UTF-8.
-pub(crate) fn path_text(path: &Path) -> Result<&str> {
-    path.to_str().with_context(|| format!("{} is not UTF-8", path.display()))
-}
-
 /// Copies the files of a folder, without its subfolders.
 fn copy_files(from: &Path, to: &Path) -> Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
-        let entry = entry?;
-        if entry.file_type()?.is_file() {
-            fs::copy(entry.path(), to.join(entry.file_name()))?;
+        let path = entry?.path();
+        if path.is_file() {
+            fs::copy(&path, to.join(path.file_name().unwrap_or_default()))?;
         }
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_program_that_is_not_there_or_no_python_is_not_usable() {
-        assert!(!is_usable("/nonexistent"));
-        assert!(!is_usable("cargo"), "it knows no -c");
-    }
 }

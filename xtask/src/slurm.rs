@@ -4,12 +4,11 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
 use rc_figures::repository;
 
-use crate::process::{Step, path_of};
+use crate::process::{cargo, path_of, run as run_step, wait};
 
 /// Runs a job array on its own Slurm, and kills and requeues a task.
 ///
@@ -33,18 +32,15 @@ const KILLED: usize = 2;
 /// Columns that depend on the run, not on the result.
 const OF_THE_RUN: [&str; 2] = ["wall_seconds", "peak_memory_bytes"];
 
-/// Time after which the run counts as failed.
-const PATIENCE: Duration = Duration::from_secs(300);
-
 #[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
 pub(crate) fn run(_args: &Args) -> Result<()> {
     if let Some(missing) = PROGRAMS.iter().find(|program| path_of(program).is_none()) {
         eprintln!("slurm: skipped, there is no {missing} here (Debian: apt-get install slurm-wlm)");
         return Ok(());
     }
-    Step { environment: &[], words: &["build", "--release", "--package", "rc-cli"] }.run(&[])?;
+    run_step(&mut cargo(&["build", "--release", "--package", "rc-cli"]))?;
     let folder = tempfile::tempdir()?;
-    let rc = Rc { program: repository::root().join("target/release/rc"), folder: folder.path().to_owned() };
+    let rc = Rc { program: repository::target().join("release/rc"), folder: folder.path().to_owned() };
     rc.run(&[&SWEEP[..], &["--quiet", "--out", "whole"]].concat())?;
     let slurm = Slurm::start(folder.path())?;
     let job = slurm.submit(&rc)?;
@@ -62,7 +58,6 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
         }
         Ok(slurm.ask("squeue", &["--noheader"])?.is_empty())
     })?;
-    rc.log()?;
     let parts: Vec<String> = (1..=TASKS).map(|index| format!("parts/part-{index}-of-{TASKS}")).collect();
     let parts: Vec<&str> = parts.iter().map(String::as_str).collect();
     rc.run(&[&["sweep", "merge"], &parts[..], &["--out", "merged"]].concat())?;
@@ -100,17 +95,6 @@ impl Rc {
     fn finished_rows(&self, part: usize) -> usize {
         let journal = self.folder.join(format!("parts/part-{part}-of-{TASKS}/sweep.jsonl"));
         std::fs::read_to_string(journal).map_or(0, |text| text.matches('\n').count().saturating_sub(1))
-    }
-
-    /// Fails with the output of the tasks if one of them was refused.
-    fn log(&self) -> Result<()> {
-        for task in 1..=TASKS {
-            let log = std::fs::read_to_string(self.folder.join(format!("log-{task}"))).unwrap_or_default();
-            if let Some(line) = log.lines().find(|line| line.starts_with("error: ")) {
-                bail!("task {task}: {line}");
-            }
-        }
-        Ok(())
     }
 
     /// The table of a sweep without the columns of the run.
@@ -221,14 +205,4 @@ fn text_of(command: &mut Command) -> Result<String> {
     let output = command.output()?;
     ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr).trim());
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
-}
-
-/// Repeats a question until the answer is yes.
-fn wait(what: &str, is_so: impl Fn() -> Result<bool>) -> Result<()> {
-    let started = Instant::now();
-    while !is_so()? {
-        ensure!(started.elapsed() < PATIENCE, "no {what} within {} s", PATIENCE.as_secs());
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    Ok(())
 }

@@ -12,9 +12,8 @@ use std::process::Command;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use rc_figures::repository;
-use toml::{Table, Value};
 
-use crate::process::Step;
+use crate::process::{cargo, run as run_step};
 
 /// Replaces rc-fractal, rc-kernel and rc-quadtree by forks, in a workspace in target/swap.
 ///
@@ -62,157 +61,99 @@ pub(crate) fn is_wrong() -> bool {
 "#;
 
 /// Names of the other libraries that the solver needs.
-const CRATES: &[&str] = &["rc-comm", "rc-core", "rc-fft", "rc-solver"];
+const CRATES: [&str; 4] = ["rc-comm", "rc-core", "rc-fft", "rc-solver"];
 
-/// Source of the program that solves with the forks.
-const SCENE: &str = include_str!("swap/scene.rs");
-const MAIN: &str = r#"//! Prints the numbers of a contact.
+/// The program that solves with the forks: its manifest, and its source beside `scene.rs`.
+const MANIFEST: &str = r#"[package]
+name = "swapped"
+edition = "2024"
 
-mod scene;
+[dependencies]
+rc-core.workspace = true
+rc-fractal.workspace = true
+rc-solver.workspace = true
+"#;
+const MAIN: &str = r#"mod scene;
 
 fn main() {
     match scene::numbers() {
         Ok(numbers) => println!("{numbers}"),
-        Err(error) => {
-            eprintln!("{error}");
-            std::process::exit(1);
-        }
+        Err(error) => println!("not solved: {error}"),
     }
 }
 "#;
 
-const BUILD: Step = Step { environment: &[], words: &["build", "--release", "--package", "swapped"] };
-
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub(crate) fn run(_args: &Args) -> Result<()> {
     let copy = repository::target().join("swap");
-    if copy.exists() {
-        fs::remove_dir_all(&copy).with_context(|| format!("could not remove {}", copy.display()))?;
-    }
-    prepare(&repository::root(), &copy)?;
+    let _ = fs::remove_dir_all(&copy);
+    prepare(&copy)?;
     // This is the folder of the repository's build, so that only the forks and the solver are built.
-    BUILD.run_in(&copy, &["--target-dir".to_owned(), repository::target().to_string_lossy().into_owned()])?;
-    let program = repository::target().join("release/swapped").with_extension(std::env::consts::EXE_EXTENSION);
+    let mut build = cargo(&["build", "--release", "--package", "swapped", "--target-dir"]);
+    run_step(build.arg(repository::target()).current_dir(&copy))?;
     let originals = scene::numbers().map_err(|error| anyhow!("with the originals: {error}"))?;
-    let forks = solved(&program, "")?;
+    let forks = solved("none")?;
     ensure!(forks == originals, "sound forks change the result: {forks} instead of {originals}");
     println!("sound forks: {forks}, as with the originals");
     for Fork { name, .. } in FORKS {
-        let wrong = solved(&program, &fork_name(name)).with_context(|| format!("{name} wrong"))?;
+        let wrong = solved(&format!("my-{name}"))?;
         ensure!(wrong != originals, "the solver does not use {name}: a wrong fork of it changes nothing");
         println!("{name} wrong: {wrong}");
     }
     Ok(())
 }
 
-/// Output of the program when the fork called `wrong` is wrong.
-fn solved(program: &Path, wrong: &str) -> Result<String> {
-    let output = Command::new(program).env("RC_SWAP_WRONG", wrong).output();
-    let output = output.with_context(|| format!("could not start {}", program.display()))?;
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
-    match output.status.code() {
-        Some(0) => Ok(text(&output.stdout)),
-        // An error of the solver is a result too. Any other exit code means that the program broke.
-        Some(1) => Ok(format!("not solved: {}", text(&output.stderr))),
-        _ => bail!("{} broke: {}", program.display(), text(&output.stderr)),
+/// Output of the program when the fork called `wrong` is wrong. An error of the solver is a result too.
+fn solved(wrong: &str) -> Result<String> {
+    let output = Command::new(repository::target().join("release/swapped")).env("RC_SWAP_WRONG", wrong).output()?;
+    if !output.status.success() {
+        bail!("the program with {wrong} wrong broke: {}", String::from_utf8_lossy(&output.stderr).trim());
     }
-}
-
-fn fork_name(name: &str) -> String {
-    format!("my-{name}")
+    Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
 /// Makes the workspace with the forks in `copy`.
-fn prepare(root: &Path, copy: &Path) -> Result<()> {
-    let folder = |name: &str| copy.join("crates").join(name);
+fn prepare(copy: &Path) -> Result<()> {
+    let root = repository::root();
     for name in CRATES {
-        copy_folder(&root.join("crates").join(name), &folder(name))?;
+        copy_folder(&root.join("crates").join(name), &copy.join("crates").join(name))?;
     }
-    for fork in FORKS {
-        let folder = folder(&fork_name(fork.name));
-        copy_folder(&root.join("crates").join(fork.name), &folder)?;
-        change(
-            &folder.join("Cargo.toml"),
-            &format!("name = \"{}\"", fork.name),
-            &format!("name = \"my-{}\"", fork.name),
-        )?;
-        change(&folder.join(fork.file), fork.original, fork.forked)?;
-        let library = folder.join("src/lib.rs");
-        write(&library, &(read(&library)? + IS_WRONG))?;
-    }
-    for name in ["Cargo.lock", "README.md", "clippy.toml"] {
+    for name in ["Cargo.lock", "Cargo.toml", "README.md", "clippy.toml"] {
         fs::copy(root.join(name), copy.join(name)).with_context(|| format!("could not copy {name}"))?;
     }
-    let manifest: Table = read(&root.join("Cargo.toml"))?.parse().context("Cargo.toml is not TOML")?;
-    write(&folder("swapped").join("Cargo.toml"), &program_manifest(root)?)?;
-    write(&folder("swapped").join("src/main.rs"), MAIN)?;
-    write(&folder("swapped").join("src/scene.rs"), SCENE)?;
-    write(&copy.join("Cargo.toml"), &workspace_manifest(manifest)?)
-}
-
-/// The root manifest with the forks, and without the members that are not copied.
-fn workspace_manifest(mut manifest: Table) -> Result<String> {
-    let workspace = manifest.get_mut("workspace").and_then(Value::as_table_mut).context("no [workspace]")?;
-    workspace.insert("members".into(), Value::Array(vec!["crates/*".into()]));
-    workspace.remove("exclude");
-    workspace.remove("default-members");
-    let dependencies = workspace.get_mut("dependencies").and_then(Value::as_table_mut).context("no dependencies")?;
-    for Fork { name, .. } in FORKS {
-        let fork = format!("path = 'crates/my-{name}'\npackage = 'my-{name}'\nversion = '0.1.0'");
-        dependencies.insert(name.into(), Value::Table(fork.parse()?));
+    let manifest = copy.join("Cargo.toml");
+    change(&manifest, r#"["crates/*", "xtask", "tests"]"#, r#"["crates/*"]"#)?;
+    change(&manifest, r#"default-members = ["crates/rc-cli"]"#, "")?;
+    // The crates are compiled quickly, since they run only briefly.
+    change(&manifest, "[profile.release.package]", "[profile.release.package]\nrc-solver.opt-level = 1")?;
+    for fork in FORKS {
+        let name = fork.name;
+        let folder = copy.join(format!("crates/my-{name}"));
+        copy_folder(&root.join("crates").join(name), &folder)?;
+        change(&folder.join("Cargo.toml"), &format!("name = \"{name}\""), &format!("name = \"my-{name}\""))?;
+        change(&folder.join(fork.file), fork.original, fork.forked)?;
+        let library = folder.join("src/lib.rs");
+        fs::write(&library, fs::read_to_string(&library)? + IS_WRONG)?;
+        let line = format!("{name} = {{ path = \"crates/{name}\",");
+        change(&manifest, &line, &format!("{name} = {{ path = \"crates/my-{name}\", package = \"my-{name}\","))?;
+        let profile = format!("[profile.release.package]\nmy-{name}.opt-level = 1");
+        change(&manifest, "[profile.release.package]", &profile)?;
     }
-    // The program is compiled quickly, since it runs only briefly.
-    let release = manifest.get_mut("profile").and_then(|profile| profile.get_mut("release")?.as_table_mut());
-    let release = release.context("no [profile.release]")?;
-    let packages = release.entry("package").or_insert_with(|| Value::Table(Table::new()));
-    let packages = packages.as_table_mut().context("[profile.release.package] is not a table")?;
-    for name in FORKS.map(|fork| fork_name(fork.name)).into_iter().chain(["rc-solver", "swapped"].map(str::to_owned)) {
-        packages.insert(name, Value::Table("opt-level = 1".parse()?));
-    }
-    Ok(toml::to_string(&manifest)?)
-}
-
-/// The manifest of the program.
-///
-/// It names the external libraries of the repository's crates. Their features, and therefore their builds, are then
-/// those of the repository.
-fn program_manifest(root: &Path) -> Result<String> {
-    let mut dependencies = Table::new();
-    for name in ["rc-cli", "rc-heights", "rc-plot", "rc-solver", "rc-sweep"] {
-        let manifest: Table = read(&root.join("crates").join(name).join("Cargo.toml"))?.parse()?;
-        let used = manifest.get("dependencies").and_then(Value::as_table).cloned().unwrap_or_default();
-        dependencies
-            .extend(used.into_iter().filter(|(name, how)| !name.starts_with("rc-") && how.get("optional").is_none()));
-    }
-    for (name, features) in [("rc-core", "'serde'"), ("rc-fractal", ""), ("rc-solver", "'serde'")] {
-        let how: Table = format!("workspace = true\nfeatures = [{features}]").parse()?;
-        dependencies.insert(name.to_owned(), Value::Table(how));
-    }
-    let head = "[package]\nname = \"swapped\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n";
-    let dependencies: Table = [("dependencies".to_owned(), Value::Table(dependencies))].into_iter().collect();
-    Ok(head.to_owned() + &toml::to_string(&dependencies)?)
-}
-
-fn read(path: &Path) -> Result<String> {
-    fs::read_to_string(path).with_context(|| format!("could not read {}", path.display()))
+    let program = copy.join("crates/swapped");
+    fs::create_dir_all(program.join("src"))?;
+    fs::write(program.join("Cargo.toml"), MANIFEST)?;
+    fs::write(program.join("src/main.rs"), MAIN)?;
+    fs::write(program.join("src/scene.rs"), include_str!("swap/scene.rs")).context("could not write the program")
 }
 
 /// Replaces the only occurrence of `original` in a file.
 fn change(path: &Path, original: &str, changed: &str) -> Result<()> {
-    let text = read(path)?;
+    let text = fs::read_to_string(path).with_context(|| format!("could not read {}", path.display()))?;
     let count = text.matches(original).count();
-    ensure!(count == 1, "`{original}` occurs {count} times in {}, not once: mend FORKS", path.display());
-    write(path, &text.replace(original, changed))
+    ensure!(count == 1, "`{original}` occurs {count} times in {}, not once: mend the swap", path.display());
+    fs::write(path, text.replace(original, changed)).with_context(|| format!("could not write {}", path.display()))
 }
 
-fn write(path: &Path, text: &str) -> Result<()> {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    fs::create_dir_all(folder)
-        .and_then(|()| fs::write(path, text))
-        .with_context(|| format!("could not write {}", path.display()))
-}
-
-/// Copies a folder with the times of its files. From these cargo knows that a crate is unchanged.
 fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     fs::create_dir_all(to).with_context(|| format!("could not make {}", to.display()))?;
     for entry in fs::read_dir(from).with_context(|| format!("could not list {}", from.display()))? {
@@ -220,28 +161,8 @@ fn copy_folder(from: &Path, to: &Path) -> Result<()> {
         if path.is_dir() {
             copy_folder(&path, &copy)?;
         } else {
-            let changed = fs::metadata(&path).and_then(|data| data.modified());
-            let copied = fs::copy(&path, &copy)
-                .and_then(|_| fs::File::options().write(true).open(&copy)?.set_modified(changed?));
-            copied.with_context(|| format!("could not copy {}", path.display()))?;
+            fs::copy(&path, &copy).with_context(|| format!("could not copy {}", path.display()))?;
         }
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_workspace_has_the_forks_in_place_of_the_originals() {
-        let copy = tempfile::tempdir().expect("a temporary folder");
-        prepare(&repository::root(), copy.path()).expect("a workspace");
-        let manifest: Table = read(&copy.path().join("Cargo.toml")).and_then(|text| Ok(text.parse()?)).expect("TOML");
-        for Fork { name, .. } in FORKS {
-            let fork = &manifest["workspace"]["dependencies"][name];
-            assert_eq!(fork["path"].as_str(), Some(format!("crates/my-{name}").as_str()));
-            assert!(!copy.path().join("crates").join(name).exists(), "{name} itself is not there");
-        }
-    }
 }

@@ -1,79 +1,64 @@
 //! `cargo xtask wheel`: the wheel for distribution, tested without a compiler.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use rc_figures::repository;
 
-use crate::process::Program;
-use crate::python::{folder, in_environment, only_wheel, path_text};
+use crate::process::{program, run as run_step};
+use crate::python::{new_environment, only_wheel, usable_python};
 
-/// Builds a manylinux wheel of the Python package into target/python/dist, and tests it.
+/// Builds a manylinux wheel of the Python package into target/dist, and tests it.
 ///
 /// The test is in a new virtual environment, in whose search path there is no compiler. maturin links with its own zig
-/// against the C library of manylinux 2014. It needs a Python from 3.10 on, and rustup or a Rust for this target.
+/// against the C library of manylinux 2014. It needs Python 3.11 or newer, and rustup or a Rust for this target.
 #[derive(clap::Args)]
-pub(crate) struct Args {
-    /// Platform tag of the wheel
-    #[arg(long, default_value = "manylinux2014")]
-    manylinux: String,
-}
+pub(crate) struct Args {}
 
 /// Tools that make the wheel, with versions.
-const TOOLS: [&str; 2] = ["maturin[zig]==1.16.0", "pip"];
+const TOOLS: [&str; 1] = ["maturin[zig]==1.16.0"];
 
 /// Packages that the tests of the wheel need.
 const TEST_TOOLS: [&str; 4] = ["numpy", "pytest==9.2.0", "matplotlib", "tqdm"];
 
-#[expect(clippy::print_stdout, reason = "the result of the command")]
-pub(crate) fn run(args: &Args) -> Result<()> {
-    let (tools, wheels) = (folder().join("wheel-tools"), folder().join("dist"));
-    new_environment(&tools, &TOOLS)?;
-    let _ = fs::remove_dir_all(&wheels);
-    let build = ["-m", "maturin", "build", "--release", "--locked", "--zig", "--manylinux", &args.manylinux, "--out"];
-    let words: Vec<&str> = build.into_iter().chain([path_text(&wheels)?]).collect();
+pub(crate) fn run(_args: &Args) -> Result<()> {
+    build(&repository::target().join("dist"), &[WHEEL])
+}
+
+/// What maturin makes for PyPI: the wheel, and the sources.
+pub(crate) const WHEEL: &[&str] = &["build", "--release", "--locked", "--zig", "--compatibility", "manylinux2014"];
+pub(crate) const SDIST: &[&str] = &["sdist"];
+
+/// Makes some of [`WHEEL`] and [`SDIST`] in `out`, and tests the wheel. Without Python, a line says so.
+pub(crate) fn build(out: &Path, kinds: &[&[&str]]) -> Result<()> {
+    let Some(python) = usable_python() else { return Ok(()) };
+    let tools = new_environment(&python, "wheel-tools", &TOOLS)?;
+    if let Ok(old) = only_wheel(out) {
+        fs::remove_file(old)?;
+    }
     // Programs of the environment come first in the search path, since zig is one of them.
-    Program::new(in_environment(&tools, "python"), &words).with_path(&programs_before(&tools)?).run()?;
-    let wheel = only_wheel(&wheels)?;
-    try_wheel(&wheel)?;
-    let bytes = wheel.metadata()?.len();
-    println!("{}: {:.1} MB", wheel.display(), bytes as f64 / 1e6);
-    Ok(())
+    let others = std::env::var_os("PATH").unwrap_or_default();
+    let path = std::env::join_paths([programs(&tools)].into_iter().chain(std::env::split_paths(&others)))?;
+    for words in kinds {
+        run_step(program(&tools, &["-m", "maturin"]).args(*words).arg("--out").arg(out).env("PATH", &path))?;
+    }
+    try_wheel(&python, &only_wheel(out)?)
 }
 
 /// Installs the wheel in a new environment and runs tests and command there.
 ///
 /// Only the programs of this environment are found.
-fn try_wheel(wheel: &Path) -> Result<()> {
-    let environment = folder().join("wheel-test");
-    new_environment(&environment, &TEST_TOOLS)?;
-    let programs = in_environment(&environment, "python").with_file_name("");
-    let path = path_text(&programs)?.to_owned();
-    let python = |words: &[&str]| Program::new(in_environment(&environment, "python"), words).with_path(&path);
-    for compiler in ["cc", "gcc", "cargo", "rustc"] {
-        if programs.join(compiler).exists() {
-            bail!("{} is a compiler; the wheel is to be tried without one", programs.join(compiler).display());
-        }
-    }
-    python(&["-m", "pip", "install", "--quiet", "--no-index", path_text(wheel)?]).run()?;
-    Program::new(in_environment(&environment, "rc"), &["--version"]).with_path(&path).run()?;
-    let tests = repository::root().join("python/tests");
-    python(&["-m", "pytest", "-q", path_text(&tests)?, "-p", "no:cacheprovider", "-k", "not notebook"]).run()
+fn try_wheel(python: &str, wheel: &Path) -> Result<()> {
+    let python = new_environment(python, "wheel-test", &TEST_TOOLS)?;
+    let path = programs(&python);
+    run_step(program(&python, &["-m", "pip", "install", "--quiet", "--no-index"]).arg(wheel).env("PATH", &path))?;
+    run_step(program(path.join("rc"), &["--version"]).env("PATH", &path))?;
+    let tests = ["-m", "pytest", "-q", "python/tests", "-p", "no:cacheprovider", "-k", "not notebook"];
+    run_step(program(&python, &tests).env("PATH", &path)).context("the wheel does not work")
 }
 
-/// A new virtual environment with these packages.
-fn new_environment(environment: &Path, packages: &[&str]) -> Result<()> {
-    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
-    Program::new(python, &["-m", "venv", "--clear", path_text(environment)?]).run()?;
-    let words: Vec<&str> = ["-m", "pip", "install", "--quiet"].into_iter().chain(packages.iter().copied()).collect();
-    Program::new(in_environment(environment, "python"), &words).run()
-}
-
-/// Search path of this process, after the folder of an environment's programs.
-fn programs_before(environment: &Path) -> Result<String> {
-    let programs = in_environment(environment, "python").with_file_name("");
-    let others = std::env::var_os("PATH").unwrap_or_default();
-    let all = std::env::join_paths([programs].into_iter().chain(std::env::split_paths(&others)))?;
-    all.into_string().ok().context("PATH is not UTF-8")
+/// Folder of the programs of an environment.
+fn programs(python: &Path) -> PathBuf {
+    python.with_file_name("")
 }

@@ -5,14 +5,12 @@ use rc_figures::blocks;
 use rc_figures::repository::Sources;
 use rc_solver::capabilities_as_markdown;
 
-use super::complaint::Complaint;
-
 const DOCUMENT: &str = "docs/mesh-and-tolerance.md";
 
 const CURE: &str = "the table in rc-solver/src/problem/capabilities.rs; run `cargo xtask tidy --write`";
 
 /// Checks that the guide has the table of the solver.
-pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
+pub(super) fn check(sources: &Sources) -> Vec<String> {
     blocks::complaint(DOCUMENT, sources, render(sources), CURE).into_iter().collect()
 }
 

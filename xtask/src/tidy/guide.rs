@@ -4,22 +4,22 @@
 
 use rc_figures::repository::{Sources, has_extension};
 
-use super::complaint::Complaint;
-
 const SUMMARY: &str = "docs/SUMMARY.md";
 
 /// Checks that each document is in the summary, and that links between texts work.
-pub(super) fn check(sources: &Sources) -> Vec<Complaint> {
+pub(super) fn check(sources: &Sources) -> Vec<String> {
     let summary = sources.get(SUMMARY).map_or("", String::as_str);
     let documents =
         sources.keys().filter_map(|path| path.strip_prefix("docs/")).filter(|name| has_extension(name, "md"));
-    let missing = documents.filter(|name| *name != "SUMMARY.md" && !summary.contains(&format!("({name})")));
+    // Folders of docs/ hold what is no chapter: pictures, and the paper.
+    let chapters = documents.filter(|name| *name != "SUMMARY.md" && !name.contains('/'));
+    let missing = chapters.filter(|name| !summary.contains(&format!("({name})")));
     let missing = missing.map(|name| format!("docs/{name} is not a chapter; add it to {SUMMARY}"));
     let texts = sources.iter().filter(|(path, _)| has_extension(path, "md"));
     missing.chain(texts.flat_map(|(path, text)| check_links(path, text, sources))).collect()
 }
 
-fn check_links(path: &str, text: &str, sources: &Sources) -> Vec<Complaint> {
+fn check_links(path: &str, text: &str, sources: &Sources) -> Vec<String> {
     let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
     let links = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     // Folders and pictures are not texts, and other addresses are outside of the repository.
@@ -60,6 +60,7 @@ mod tests {
         add(SUMMARY, "- [A](a.md)\n");
         add("docs/a.md", "[up](#use) [picture](images/a.png) [out](https://example.org/b.md)");
         add("README.md", "[a](docs/a.md) [data](data)");
+        add("docs/paper/paper.md", "A paper [@a2012].");
         assert_eq!(check(&sources), Vec::<String>::new());
         sources.insert("docs/b.md".to_owned(), "[nowhere](c.md) [out](../data)".to_owned());
         let complaints = check(&sources);

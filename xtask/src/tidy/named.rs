@@ -7,8 +7,6 @@ use std::collections::BTreeSet;
 use clap::CommandFactory as _;
 use rc_figures::repository::{self, Sources, has_extension};
 
-use super::complaint::Complaint;
-
 /// Folders whose files texts name by their paths from the root.
 const FOLDERS: &[&str] = &["crates/", "data/", "docs/", "fuzz/", "python/", "tests/", "xtask/"];
 /// The file that may name things which no longer exist.
@@ -19,7 +17,7 @@ const FOREIGN: &[&str] = &["all-features", "checkpoint", "features", "help", "lo
 /// Checks guide, front pages and the comments in code.
 ///
 /// `xtask` is the command line of `cargo xtask`.
-pub(super) fn check(sources: &Sources, xtask: &clap::Command) -> Vec<Complaint> {
+pub(super) fn check(sources: &Sources, xtask: &clap::Command) -> Vec<String> {
     let mut flags: BTreeSet<String> = FOREIGN.iter().map(|flag| (*flag).to_owned()).collect();
     collect_flags(xtask, &mut flags);
     collect_flags(&rc_cli::args::Cli::command(), &mut flags);
@@ -54,7 +52,7 @@ fn read_by_people(path: &str, text: &str) -> Option<String> {
 /// Complaints about names of files that do not exist.
 ///
 /// Names are relative to the root or to the text's crate.
-fn check_files(path: &str, text: &str, sources: &Sources) -> Vec<Complaint> {
+fn check_files(path: &str, text: &str, sources: &Sources) -> Vec<String> {
     let crate_folder = path.match_indices('/').nth(1).map_or("", |(at, _)| &path[..=at]);
     let there = |name: &str| sources.contains_key(name) || repository::root().join(name).exists();
     let names =
@@ -70,7 +68,7 @@ fn check_files(path: &str, text: &str, sources: &Sources) -> Vec<Complaint> {
 /// Complaints about `cargo xtask NAME --flag …` with an unknown command or flag.
 ///
 /// The command ends at the end of the line or of the quotation.
-fn check_commands(path: &str, text: &str, xtask: &clap::Command) -> Vec<Complaint> {
+fn check_commands(path: &str, text: &str, xtask: &clap::Command) -> Vec<String> {
     let mut complaints = Vec::new();
     for line in text.split("cargo xtask ").skip(1) {
         let mut words = line.split(['`', '\n', '#', ';', ')']).next().unwrap_or_default().split_whitespace();
@@ -91,7 +89,7 @@ fn check_commands(path: &str, text: &str, xtask: &clap::Command) -> Vec<Complain
 }
 
 /// Complaints about unknown flags that a text names alone, as in `--threads 2`.
-fn check_flags(path: &str, text: &str, flags: &BTreeSet<String>) -> Vec<Complaint> {
+fn check_flags(path: &str, text: &str, flags: &BTreeSet<String>) -> Vec<String> {
     let named = text
         .split("`--")
         .skip(1)

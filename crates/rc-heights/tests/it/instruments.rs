@@ -302,6 +302,7 @@ fn headers_of_instruments_that_promise_terabytes_are_refused_before_memory_is_ta
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of cases")]
 fn wrong_headers_of_instruments_are_named_with_their_field() {
     let sur = |at: usize, bytes: &[u8]| (Format::Sur, build::with(build::sur(HEIGHTS), &[(at, bytes)]));
     let spm = |from: &str, to: &str| {
