@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: run time against error, of rc and of other programs.
+//! `cargo xtask bench`: run time against the stated error, of rc and of other programs.
 
 use std::path::PathBuf;
 
@@ -9,10 +9,10 @@ use rc_figures::repository;
 /// Scenes, repeats and longest solve of a peer (s) with `--quick`.
 const QUICK: (&[&str], usize, f64) = (&["waves-16", "hurst-0.3-light"], 2, 0.3);
 
-/// Measures run time against error on ten fixed scenes, by every method.
+/// Measures run time against the stated error on ten fixed scenes, by every method.
 ///
-/// With --peers it also measures other programs. Errors are relative to `data/bench/reference.csv`. Run it on an idle
-/// machine. docs/benchmarks.md explains the results.
+/// With --peers it also measures other programs. `data/bench/reference.csv` says which stated errors are true. Run it
+/// on an idle machine. docs/benchmarks.md explains the results.
 #[derive(clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "flags")]
 pub(crate) struct Args {
@@ -24,12 +24,12 @@ pub(crate) struct Args {
     scenes: Vec<String>,
     /// Also measures ASPHER, Tamaas and ContactMechanics.
     ///
-    /// They are in a Python environment under `target/`, which is made from PyPI when needed.
+    /// The guide says how to install them.
     #[arg(long)]
     peers: bool,
-    /// A Python that has the peers, instead of the environment under `target/`.
-    #[arg(long, value_name = "PATH", requires = "peers")]
-    python: Option<PathBuf>,
+    /// A Python that has the peers, instead of that in `target/bench-peers/`.
+    #[arg(long, value_name = "PATH", requires = "peers", default_value_os_t = peers(), hide_default_value = true)]
+    python: PathBuf,
     /// Number of solves of each case. The result is their median.
     #[arg(long, default_value_t = 5)]
     repeats: usize,
@@ -44,18 +44,15 @@ pub(crate) struct Args {
     /// Archives this run in `data/bench/`, `docs/images/` and the tables of the documents.
     #[arg(long, conflicts_with_all = ["quick", "scenes"])]
     archive: bool,
-    /// Continues an interrupted run into the same folder, without its finished scenes.
-    #[arg(long, conflicts_with = "scale")]
-    resume: bool,
     /// Instead of errors: time, memory and iterations on grids up to 32768² (6 GB).
     ///
     /// Times are by number of threads and by contact area. With --peers ASPHER is measured too.
     #[arg(long, conflicts_with = "scenes", group = "instead")]
     scale: bool,
-    /// Instead of measuring: rewrites the tables in the documents from the archived run.
+    /// Instead of measuring: rewrites the tables in the documents, and the picture, from the archived run.
     #[arg(long, group = "instead")]
     tables: bool,
-    /// Instead of measuring: compares counts of operations with the stored counts. A change is an error.
+    /// Instead of measuring: compares counts of operations with the stored counts. Fewer pass, more fail.
     #[arg(long, group = "instead")]
     check: bool,
     /// Instead of measuring: stores the counts of operations.
@@ -64,11 +61,6 @@ pub(crate) struct Args {
     /// Instead of measuring: computes the reference values again.
     #[arg(long, group = "instead")]
     make_reference: bool,
-    /// Instead of measuring: saves the heights of each scene here, for other programs.
-    ///
-    /// A file is for instance paper-2048.npy, with cell side 1.
-    #[arg(long, value_name = "DIR", group = "instead")]
-    peer_heights: Option<PathBuf>,
     /// Work for a process that the benchmark starts itself.
     #[arg(long, hide = true, group = "instead")]
     job: Option<String>,
@@ -82,9 +74,13 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         Args { accept: true, .. } => bench::accept(),
         Args { tables: true, .. } => bench::update_documents(),
         Args { make_reference: true, .. } => bench::make_reference(&chosen(args)?),
-        Args { peer_heights: Some(folder), .. } => bench::save_heights(folder, &chosen(args)?),
         _ => bench::measure(&params(args)?),
     }
+}
+
+/// The Python of the environment that the guide makes.
+fn peers() -> PathBuf {
+    repository::root().join("target/bench-peers/bin/python")
 }
 
 /// The scenes that `args` selects.
@@ -100,6 +96,5 @@ fn params(args: &Args) -> Result<Params> {
         peers: args.peers.then(|| PeerParams { python: args.python.clone(), seconds }),
         out: args.out.clone(),
         archive: args.archive,
-        resume: args.resume,
     })
 }

@@ -18,7 +18,7 @@ mod tidy;
 mod wheel;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
-use rc_bench::{Accuracy, KernelErrors};
+use rc_bench::accuracy;
 use rc_figures::{Fig1, Fig2, Fig3, Fig4, Fig5, Fig6, Fig7, Fig8, Statements};
 
 /// Tests, checks, figures and benchmarks of rc. Needs nothing but cargo.
@@ -57,9 +57,7 @@ enum Command {
     Reproduction(figures::ReproductionArgs),
     Gfmd(gfmd::Args),
     Challenge(challenge::Args),
-    /// Tabulates and draws the truncation error of the image sums against shells and time
-    KernelError(figures::Args),
-    /// Measures errors and error bars of area, rms pressure and mean gap on usual meshes
+    /// Measures how often the error bars of area, rms pressure and mean gap hold
     Accuracy(figures::Args),
     Bench(bench::Args),
     Mpi(mpi::Args),
@@ -90,8 +88,7 @@ fn main() -> anyhow::Result<()> {
         Command::Reproduction(args) => figures::run_reproduction(&args),
         Command::Gfmd(args) => gfmd::run(&args),
         Command::Challenge(args) => challenge::run(&args),
-        Command::KernelError(args) => figures::run::<KernelErrors>(&args),
-        Command::Accuracy(args) => figures::run::<Accuracy>(&args),
+        Command::Accuracy(args) => accuracy::run(args.preset(), &args.out),
         Command::Bench(args) => bench::run(&args),
         Command::Mpi(args) => mpi::run(&args),
         Command::Slurm(args) => slurm::run(&args),

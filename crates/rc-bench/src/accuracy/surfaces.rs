@@ -1,4 +1,4 @@
-//! Surfaces on which error bars are tested, in addition to the paper's.
+//! Surfaces on which error bars are tested.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,7 +6,11 @@ use anyhow::Result;
 use rc_core::{DVec2, Field, Grid, HeightField};
 use rc_fractal::{Amplitudes, Normalisation, SpectrumParams, Surface, Truncation};
 
-use super::scenes::{HURST, RMS_SLOPE};
+/// Rms slope of all surfaces but the ball. Contact depends only on the ratio of mean pressure to rms slope.
+pub(super) const RMS_SLOPE: f64 = 0.03;
+
+/// Hurst exponents that the surfaces take in turns.
+const HURST: [f64; 5] = [0.8, 0.3, 0.5, 1.0, 0.65];
 
 /// Kinds of surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

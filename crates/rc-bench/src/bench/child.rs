@@ -9,58 +9,28 @@ use std::process::Command;
 use anyhow::{Context, Result, bail};
 use rc_core::Grid;
 use rc_heights::npy;
-use rc_solver::Method;
 use serde::{Deserialize, Serialize};
 
 use super::measure::{Outcome, measure};
 use super::scenes::Scene;
-use super::setting::{KernelName, Setting, parse_tolerance, typed};
+use super::setting::Setting;
 
 /// The job of a child process, which is the argument of `--job`.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Job {
     /// Solves once and prints the outcome.
-    Solve { scene: String, setting: PlainSetting },
+    Solve { scene: String, setting: Setting },
     /// Saves the heights on a grid, so that this process stays small.
     Heights { scene: String, side: usize, path: PathBuf },
 }
 
-/// A [`Setting`] that can be serialised.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct PlainSetting {
-    adaptive: bool,
-    kernel: KernelName,
-    border_level: usize,
-    elements_per_wave: usize,
-    /// The tolerance as a user types it.
-    tolerance: String,
-}
-
-impl From<Setting> for PlainSetting {
-    fn from(setting: Setting) -> Self {
-        let Setting { method, kernel, border_level, elements_per_wave, tolerance } = setting;
-        let adaptive = method == Method::Adaptive;
-        Self { adaptive, kernel, border_level, elements_per_wave, tolerance: typed(tolerance) }
-    }
-}
-
-impl TryFrom<PlainSetting> for Setting {
-    type Error = anyhow::Error;
-
-    fn try_from(setting: PlainSetting) -> Result<Self> {
-        let PlainSetting { adaptive, kernel, border_level, elements_per_wave, tolerance } = setting;
-        let method = if adaptive { Method::Adaptive } else { Method::Uniform };
-        Ok(Self { method, kernel, border_level, elements_per_wave, tolerance: parse_tolerance(&tolerance)? })
-    }
-}
-
-/// Solves in a child process with `threads` threads, or with all of the machine's.
+/// Solves in a child process with `threads` threads.
 ///
 /// # Errors
 /// When the process fails. The text has what the process wrote.
-pub(super) fn solve(scene: &Scene, setting: &Setting, threads: Option<usize>) -> Result<Outcome> {
-    let job = Job::Solve { scene: scene.name.to_owned(), setting: (*setting).into() };
+pub(super) fn solve(scene: &Scene, setting: Setting, threads: usize) -> Result<Outcome> {
+    let job = Job::Solve { scene: scene.name.to_owned(), setting };
     let answer = start(&job, threads)?;
     serde_json::from_str(&answer).with_context(|| format!("the process for {job:?} answered '{answer}'"))
 }
@@ -72,14 +42,14 @@ pub(super) fn solve(scene: &Scene, setting: &Setting, threads: Option<usize>) ->
 /// # Errors
 /// When the process fails. The text has what the process wrote.
 pub(super) fn save_heights(scene: &Scene, side: usize, path: &Path) -> Result<()> {
-    start(&Job::Heights { scene: scene.name.to_owned(), side, path: path.to_path_buf() }, None).map(drop)
+    start(&Job::Heights { scene: scene.name.to_owned(), side, path: path.to_path_buf() }, 1).map(drop)
 }
 
-fn start(job: &Job, threads: Option<usize>) -> Result<String> {
+fn start(job: &Job, threads: usize) -> Result<String> {
     let this = env::current_exe().context("the path of this program is unknown")?;
     let output = Command::new(this)
         .args(["bench", "--job", &serde_json::to_string(job)?])
-        .envs(threads.map(|threads| ("RAYON_NUM_THREADS", threads.to_string())))
+        .env("RAYON_NUM_THREADS", threads.to_string())
         .output()
         .with_context(|| format!("could not start a process for {job:?}"))?;
     if !output.status.success() {
@@ -96,7 +66,7 @@ fn start(job: &Job, threads: Option<usize>) -> Result<String> {
 pub fn work(job: &str) -> Result<()> {
     match serde_json::from_str(job).context("--job is for processes that the benchmark starts itself")? {
         Job::Solve { scene, setting } => {
-            println!("{}", serde_json::to_string(&measure(&Scene::named(&scene)?, &setting.try_into()?)?)?);
+            println!("{}", serde_json::to_string(&measure(&Scene::named(&scene)?, &setting)?)?);
         }
         Job::Heights { scene, side, path } => {
             let heights = Scene::named(&scene)?.surface()?.sample_on(Grid::square(side)?)?;

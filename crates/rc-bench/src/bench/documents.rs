@@ -1,18 +1,14 @@
 //! The tables in README.md and the guide, made from the files in `data/bench/`.
 
-use anyhow::Result;
+use anyhow::{Context, Result, bail};
 use rc_figures::blocks;
 use rc_figures::repository::Sources;
-use toml::Table as Toml;
 
-use super::behind;
-use super::levels::{Choice, Results};
 use super::record::{Row, from_csv};
 use super::reference::{REFERENCE, References};
-use super::scale::row::ScaleRow;
-use super::scale::tables as scale;
-use super::scenes::SCENES;
-use super::tables::{EQUAL_MESHES, equal_meshes, scene, scenes, short, spreads, statements, times};
+use super::scale::ScaleRow;
+use super::tables::{contact, equal_meshes, grids, machine, sentence, spreads, times};
+use super::times::Results;
 
 /// The documents that have blocks of the benchmark.
 const DOCUMENTS: [&str; 4] = ["README.md", "docs/benchmarks.md", "docs/faq.md", "docs/adaptive-mesh.md"];
@@ -24,11 +20,15 @@ pub(super) const MACHINE: &str = "data/bench/bench.toml";
 pub(super) const SCALE: &str = "data/bench/scale.csv";
 pub(super) const SCALE_MACHINE: &str = "data/bench/scale.toml";
 
+/// The names of the blocks.
+const BLOCKS: [&str; 7] =
+    ["bench-times", "bench-equal", "bench-machine", "scale-grids", "scale-contact", "scale-sentence", "scale-machine"];
+
 /// Rewrites the tables in the documents.
 ///
 /// # Errors
 /// When a file is missing or not as expected.
-pub fn update() -> Result<()> {
+pub(super) fn update() -> Result<()> {
     blocks::rewrite(DOCUMENTS, render)
 }
 
@@ -42,78 +42,29 @@ pub fn check(sources: &Sources) -> Vec<String> {
 
 /// A document with its blocks filled in.
 fn render(document: &str, sources: &Sources) -> Result<String, String> {
-    blocks::fill(document, sources, |name| match name.strip_prefix("scale-") {
-        Some(name) => scale_block(name, sources),
-        None => bench_block(name, sources),
-    })
-    .map_err(|error| format!("{document}: {error}"))
+    blocks::fill(document, sources, |name| block(name, sources).map_err(|error| format!("{error:#}")))
+        .map_err(|error| format!("{document}: {error}"))
 }
 
-fn source<'a>(sources: &'a Sources, path: &str, how: &str) -> Result<&'a str, String> {
-    let text = sources.get(path).map(String::as_str);
-    text.ok_or_else(|| format!("{path} is missing; `cargo xtask bench {how}` makes it"))
-}
-
-/// A block with numbers of the archived run.
-fn bench_block(name: &str, sources: &Sources) -> Result<String, String> {
-    let source = |path| source(sources, path, "--peers --archive");
-    let rows: Vec<Row> = from_csv(source(BENCH)?, BENCH).map_err(|error| format!("{error:#}"))?;
-    let references = References::from_text(source(REFERENCE)?).map_err(|error| format!("{error:#}"))?;
+fn block(name: &str, sources: &Sources) -> Result<String> {
+    let source = |path: &str| {
+        let text = sources.get(path).map(String::as_str);
+        text.with_context(|| format!("{path} is missing; `cargo xtask bench --peers --archive` makes it"))
+    };
+    let references = References::from_text(source(REFERENCE)?)?;
+    let rows: Vec<Row> = from_csv(source(BENCH)?, BENCH)?;
+    let scale: Vec<ScaleRow> = from_csv(source(SCALE)?, SCALE)?;
     let results = Results { rows: &rows, references: &references };
-    let first = SCENES[0].name;
-    match name {
-        "bench-short" => Ok(short(&results)),
-        "bench-stated" => Ok(times(&results, Choice::Stated)),
-        "bench-hindsight" => Ok(times(&results, Choice::Hindsight)),
-        "bench-statements" => Ok(statements(&results)),
-        "bench-behind" => Ok(behind::list(&results)),
-        "bench-behind-summary" => Ok(behind::summary(&results)),
-        "bench-behind-count" => Ok(behind::count(&results)),
-        "bench-machine" => Ok(format!("{}\n{}", machine(source(MACHINE)?, MACHINE)?, spreads(&results))),
-        "bench-scenes" => scenes(&references),
-        "bench-scene-stated" => Ok(scene(&results, first, Choice::Stated)),
-        "bench-scene-hindsight" => Ok(scene(&results, first, Choice::Hindsight)),
-        "bench-equal" => Ok(equal_meshes(&results, &EQUAL_MESHES)),
-        _ => Err(format!("no numbers are called `{name}`; there are {BENCH_BLOCKS}")),
-    }
-}
-
-/// A block with numbers of the archived run of large grids.
-fn scale_block(name: &str, sources: &Sources) -> Result<String, String> {
-    let source = |path| source(sources, path, "--scale --peers --archive");
-    let rows: Vec<ScaleRow> = from_csv(source(SCALE)?, SCALE).map_err(|error| format!("{error:#}"))?;
-    match name {
-        "grids" => Ok(scale::grids(&rows)),
-        "sentence" => scale::sentence(&rows).ok_or_else(|| format!("{SCALE} has no grid of N = 128")),
-        "threads" => Ok(scale::threads(&rows)),
-        "contact" => Ok(scale::contact(&rows)),
-        "machine" => machine(source(SCALE_MACHINE)?, SCALE_MACHINE),
-        _ => Err(format!("no numbers are called `scale-{name}`; there are {SCALE_BLOCKS}")),
-    }
-}
-
-const BENCH_BLOCKS: &str = "bench-short, bench-stated, bench-hindsight, bench-statements, bench-behind, bench-behind-summary, \
-                            bench-behind-count, bench-machine, bench-scenes, bench-scene-stated, bench-scene-hindsight, bench-equal";
-const SCALE_BLOCKS: &str = "scale-grids, scale-sentence, scale-threads, scale-contact, scale-machine";
-
-/// One line about the machine and the programs.
-fn machine(text: &str, path: &str) -> Result<String, String> {
-    let run: Toml = text.parse().map_err(|error| format!("{path}: {error}"))?;
-    let cell = |key: &str| run.get(key).map_or_else(|| "?".to_owned(), |value| value.to_string().replace('"', ""));
-    let peers = run.get("peers").and_then(toml::Value::as_table).into_iter().flatten();
-    let peers: Vec<String> =
-        peers.map(|(name, version)| format!("{name} {}", version.as_str().unwrap_or("?"))).collect();
-    let against = if peers.is_empty() { "no peers".to_owned() } else { peers.join(", ") };
-    Ok(format!(
-        "rc {} ({}), {}; {}, {} threads, {}; {} s in all.\n",
-        cell("version"),
-        cell("compiler"),
-        against,
-        cell("processor"),
-        cell("threads"),
-        cell("system"),
-        cell("seconds")
-    ))
+    Ok(match name {
+        "bench-times" => times(&results),
+        "bench-equal" => equal_meshes(&results),
+        "bench-machine" => machine(&source(MACHINE)?.parse()?) + "\n" + &spreads(&results),
+        "scale-grids" => grids(&scale),
+        "scale-contact" => contact(&scale),
+        "scale-sentence" => sentence(&scale).unwrap_or_default(),
+        "scale-machine" => machine(&source(SCALE_MACHINE)?.parse()?),
+        _ => bail!("no numbers are called `{name}`; there are {}", BLOCKS.join(", ")),
+    })
 }
 
 #[cfg(test)]
@@ -124,14 +75,14 @@ mod tests {
     use rc_figures::repository;
 
     use super::*;
-    use crate::bench::levels::tests::rows;
+    use crate::bench::record::tests::rows;
     use crate::bench::record::to_csv;
     use crate::bench::scale::tests::rows as scale_rows;
 
     /// Every block in each document, and the archived files.
     fn sources() -> Sources {
-        let names = BENCH_BLOCKS.split(", ").chain(SCALE_BLOCKS.split(", "));
-        let blocks: Vec<String> = names.map(|name| format!("before {BEGIN}{name} -->stale{END} after")).collect();
+        let blocks: Vec<String> =
+            BLOCKS.iter().map(|name| format!("before {BEGIN}{name} -->stale{END} after")).collect();
         let document = blocks.join("\n");
         let reference = fs::read_to_string(repository::root().join(REFERENCE)).expect("the references");
         let machine = "version = \"0.1.0\"\nthreads = 2\n[peers]\ntamaas = \"2.9.0\"\n".to_owned();
@@ -153,14 +104,11 @@ mod tests {
             sources.insert(path.to_owned(), text);
         }
         assert_eq!(check(&sources), Vec::<String>::new());
+        let unknown = format!("{BEGIN}scale-nothing -->{END}");
+        let readme = sources.insert("README.md".to_owned(), unknown).expect("a document");
+        assert!(check(&sources)[0].contains("`scale-nothing`"), "{:?}", check(&sources));
+        sources.insert("README.md".to_owned(), readme);
         sources.remove(BENCH);
         assert!(check(&sources)[0].contains("--archive"));
-    }
-
-    #[test]
-    fn an_unknown_block_is_named() {
-        let mut sources = sources();
-        sources.insert("README.md".to_owned(), format!("{BEGIN}scale-nothing -->{END}"));
-        assert!(check(&sources)[0].contains("`scale-nothing`"), "{:?}", check(&sources));
     }
 }

@@ -16,14 +16,18 @@ pub(super) fn description(peers: &BTreeMap<String, String>, seconds: f64) -> Res
     let mut run = Toml::new();
     run.insert("version".into(), version()?.into());
     run.insert("processor".into(), processor().into());
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    run.insert("threads".into(), Value::Integer(threads as i64));
+    run.insert("threads".into(), Value::Integer(all_threads() as i64));
     run.insert("system".into(), format!("{} {}", std::env::consts::OS, std::env::consts::ARCH).into());
     run.insert("compiler".into(), compiler().into());
     run.insert("seconds".into(), Value::Integer(seconds.round() as i64));
     let peers = peers.iter().map(|(name, version)| (name.clone(), Value::String(version.clone())));
     run.insert("peers".into(), Value::Table(peers.collect()));
     Ok(run)
+}
+
+/// Number of threads that all programs may use.
+pub(super) fn all_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// Model of the processor, if the system tells it.

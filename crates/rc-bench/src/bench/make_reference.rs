@@ -4,9 +4,9 @@
 //! mean gap converge fastest with `spectral` on uniform grids. All values are found again with the other kernel on
 //! uniform grids.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use rc_figures::repository;
-use rc_solver::{Method, Tolerance};
+use rc_solver::Tolerance;
 
 use super::extrapolation::{Counted, Limit, area_limit, richardson};
 use super::measure::{Solved, solve};
@@ -62,22 +62,14 @@ fn rows(scene: &Scene) -> Result<Vec<ReferenceRow>> {
     let (side, levels) = BORDER;
     let deep = levels.iter().map(|&level| on(scene, side, |m| Setting::adaptive(level, m, AREA_TOLERANCE)));
     let deep = deep.collect::<Result<Vec<_>>>()?;
-    // The height of the highest point of the surface. Its error is far below the uncertainty of a mean gap.
-    let h_max = deep.last().context("a border level")?.h_max;
     let deep: Vec<Counted> = deep.iter().zip(levels).map(|(solved, level)| counted(solved, side << level)).collect();
     let counts: Vec<Counted> = spectral.iter().zip(SIDES).map(|(solved, side)| counted(solved, side)).collect();
     let area = (area_limit(&deep, LOVE_PERIMETER), area_limit(&counts, CALIBRATED));
     let both = |of: fn(&Solved) -> f64| -> Result<(Limit, Limit)> { Ok((limit(&spectral, of)?, limit(&love, of)?)) };
     let rms_pressure = both(|solved| solved.observables.rms_pressure)?;
     let mean_gap = both(|solved| solved.observables.mean_gap)?;
-    let penetration = |gap: Limit| Limit { value: h_max - gap.value, ..gap };
-    let quantities = [
-        (Quantity::Area, area),
-        (Quantity::RmsPressure, rms_pressure),
-        (Quantity::Penetration, (penetration(mean_gap.0), penetration(mean_gap.1))),
-        (Quantity::MeanGap, mean_gap),
-    ];
-    Ok(quantities.into_iter().map(|(quantity, limits)| row(scene, quantity, limits)).collect())
+    let limits = [area, rms_pressure, mean_gap];
+    Ok(Quantity::ALL.into_iter().zip(limits).map(|(quantity, limits)| row(scene, quantity, limits)).collect())
 }
 
 /// One line of the file. Its numbers have all significant digits, and a few more.
@@ -95,16 +87,8 @@ fn row(scene: &Scene, quantity: Quantity, (limit, check): (Limit, Limit)) -> Ref
 #[expect(clippy::print_stdout, reason = "it takes minutes")]
 fn on(scene: &Scene, side: usize, setting: impl Fn(usize) -> Setting) -> Result<Solved> {
     let setting = setting(side / scene.waves);
-    let solved = solve(scene, &setting)?;
-    let (area, edges) = (solved.observables.area.cells, solved.observables.area.perimeter_edges);
-    let (rms, gap) = (solved.observables.rms_pressure, solved.observables.mean_gap);
-    let border = if setting.method == Method::Adaptive { setting.border_level } else { 0 };
-    println!(
-        "{}: {setting}: counted {area:.9}, {edges} edges of 1/{}, rms {rms:.9e}, gap {gap:.9e}",
-        scene.name,
-        side << border
-    );
-    Ok(solved)
+    println!("{}: {setting}", scene.name);
+    solve(scene, &setting)
 }
 
 fn counted(solved: &Solved, side: usize) -> Counted {

@@ -19,8 +19,6 @@ pub(super) struct Solved {
     pub(super) n_in_contact: usize,
     /// Fraction of the cells whose gap was computed.
     cells_evaluated: f64,
-    /// Maximum height, sampled at the smallest elements.
-    pub(super) h_max: f64,
     /// Seconds of the solve alone. They include the heights of the adaptive method, but not the heights of a uniform
     /// grid, which are given.
     seconds: f64,
@@ -73,13 +71,13 @@ pub(super) fn solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
 fn try_solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
     let (surface, grid) = (scene.surface()?, Grid::square(scene.side(setting.elements_per_wave))?);
     // A uniform grid gets its heights ready-made. The adaptive method makes its heights within the solve.
-    let map = (setting.method == Method::Uniform).then(|| surface.sample_on(grid)).transpose()?;
+    let map = (setting.method() == Method::Uniform).then(|| surface.sample_on(grid)).transpose()?;
     let heights = map.as_ref().map_or_else(|| surface.on(grid), HeightSource::from);
     let problem = ContactProblem::new(heights, scene.control()).with_kernel(setting.kernel.kernel());
     let params = SolveParams {
         border_level: setting.border_level,
         tolerance: setting.tolerance,
-        ..SolveParams::default().by(setting.method)
+        ..SolveParams::default().by(setting.method())
     };
     let start = Instant::now();
     let solution = problem.solve(&params, &Silent)?;
@@ -91,7 +89,6 @@ fn try_solve(scene: &Scene, setting: &Setting) -> Result<Solved> {
         n_in_contact: solution.n_in_contact(),
         cells_evaluated: solution.n_evaluated() as f64 / (solution.n_evaluated() + solution.n_proven()) as f64,
         info: solution.info().clone(),
-        h_max: solution.h_max(),
         seconds,
         observables_seconds: start.elapsed().as_secs_f64(),
     })

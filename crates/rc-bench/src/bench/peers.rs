@@ -11,31 +11,41 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use rc_figures::repository;
 use rc_solver::Tolerance;
 
+use super::machine::all_threads;
 use super::measure::Outcome;
 use super::setting::CERTIFIED;
 
-/// A peer and its tolerances; `None` is the peer's own default.
+/// A peer and its tolerances.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PeerKind {
     pub(super) name: &'static str,
-    pub(super) tolerances: &'static [Option<Tolerance>],
+    /// Name in tables and pictures.
+    pub(super) title: &'static str,
+    pub(super) tolerances: &'static [Tolerance],
+    /// Whether it takes a tolerance. If not, it derives one from the heights.
+    pub(super) takes_tolerance: bool,
     /// Whether its packages on PyPI use only one thread.
     pub(super) is_serial: bool,
 }
 
-/// The peers with their tolerances.
-///
-/// The tolerance of ASPHER has the same meaning as ours, so ASPHER also gets `auto`. The tolerance of Tamaas is
-/// relative as well. ContactMechanics derives its tolerance from the heights.
-pub(super) const PEERS: [PeerKind; 3] = [
-    ASPHER,
-    PeerKind { name: "tamaas", tolerances: &[Some(CERTIFIED)], is_serial: true },
-    PeerKind { name: "contactmechanics", tolerances: &[None], is_serial: true },
-];
+/// The fastest peer. Its tolerance has the same meaning as ours, so it also gets `auto`.
+pub(super) const ASPHER: PeerKind = PeerKind {
+    name: "aspher",
+    title: "ASPHER",
+    tolerances: &[CERTIFIED, Tolerance::Auto],
+    takes_tolerance: true,
+    is_serial: false,
+};
 
-/// The fastest peer.
-pub(super) const ASPHER: PeerKind =
-    PeerKind { name: "aspher", tolerances: &[Some(CERTIFIED), Some(Tolerance::Auto)], is_serial: false };
+/// A peer whose tolerance is relative as well.
+pub(super) const TAMAAS: PeerKind =
+    PeerKind { name: "tamaas", title: "Tamaas", tolerances: &[CERTIFIED], takes_tolerance: true, is_serial: true };
+
+const CONTACT_MECHANICS: PeerKind =
+    PeerKind { name: "contactmechanics", title: "ContactMechanics", takes_tolerance: false, ..TAMAAS };
+
+/// The peers.
+pub(super) const PEERS: [PeerKind; 3] = [ASPHER, TAMAAS, CONTACT_MECHANICS];
 
 /// A running peer.
 pub(super) struct Peer {
@@ -69,11 +79,10 @@ impl Peer {
     /// # Errors
     /// When the peer cannot be started or imported.
     pub(super) fn start(python: &Path, kind: &PeerKind) -> Result<Self> {
-        let threads = std::thread::available_parallelism().map_or(1, usize::from).to_string();
         let mut process = Command::new(python)
             .arg(repository::root().join("crates/rc-bench/peers/peers.py"))
             .arg(kind.name)
-            .env("OMP_NUM_THREADS", threads)
+            .env("OMP_NUM_THREADS", all_threads().to_string())
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

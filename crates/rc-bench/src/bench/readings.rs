@@ -38,23 +38,13 @@ impl Reading {
     /// The readings of a peer's results, in the order of the tables.
     pub(super) const ALL: [Self; 4] = [Self::Reported, Self::Published, Self::Calibrated, Self::Extrapolated];
 
-    /// Name in the heads of tables.
-    pub(super) fn name(self) -> &'static str {
+    /// The letter in tables.
+    pub(super) fn letter(self) -> char {
         match self {
-            Self::Reported => "as reported",
-            Self::Published => "corrected, 0.1181",
-            Self::Calibrated => "corrected, 0.1013",
-            Self::Extrapolated => "extrapolated",
-        }
-    }
-
-    /// Name of the peers in sentences.
-    pub(super) fn peers(self) -> &'static str {
-        match self {
-            Self::Reported => "peers as they report",
-            Self::Published => "peers corrected with 0.1181",
-            Self::Calibrated => "peers corrected with 0.1013",
-            Self::Extrapolated => "peers extrapolated",
+            Self::Reported => 'R',
+            Self::Published => 'P',
+            Self::Calibrated => 'C',
+            Self::Extrapolated => 'X',
         }
     }
 
@@ -66,60 +56,59 @@ impl Reading {
     }
 }
 
-/// A value that a user has after one or more solves.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Answer<'a> {
-    /// The finest solve that the value needs.
-    pub(super) row: &'a Row,
-    pub(super) value: f64,
-    /// Seconds of all solves that the value needs.
-    pub(super) seconds: f64,
-    /// The error that the user can state with the value.
-    pub(super) stated: Option<Stated>,
-}
-
-/// An error that a user can state without knowing the true value.
+/// A value with an error that a user can state without knowing the true value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stated {
+    pub(super) value: f64,
     /// Error relative to the value.
     pub(super) error: f64,
     /// Seconds of all solves that the value and its error need.
     pub(super) seconds: f64,
 }
 
-/// The answers of one family, whose `rows` are ordered from coarse to fine.
+/// What a user can state of one family, whose `rows` are ordered from coarse to fine.
 ///
 /// We state the error bars of the summary. A peer does not state errors, so its user compares with the next coarser
 /// mesh. The error of the finer value is then its change divided by 2^order - 1. The order is 1 for counted areas,
 /// corrected or not, and 1.5 for other quantities. The error of an extrapolated value is its change from the previous
-/// extrapolation.
-pub(super) fn answers<'a>(rows: &[&'a Row], quantity: Quantity, reading: Reading) -> Vec<Answer<'a>> {
-    let mut answers: Vec<Answer<'a>> = Vec::new();
-    for (i, &row) in rows.iter().enumerate() {
-        // A mesh is missing when a peer failed on it.
-        let coarser =
-            rows[..i].last().copied().filter(|coarser| 2 * coarser.elements_per_wave == row.elements_per_wave);
-        let answer = if row.program == OURS {
-            Some(ours(row, quantity))
-        } else if reading == Reading::Extrapolated {
-            let before = answers.last().copied().filter(|before| coarser == Some(before.row));
-            coarser.map(|coarser| extrapolated(row, coarser, quantity, before))
-        } else {
-            Some(compared(row, coarser, quantity, reading))
-        };
-        answers.extend(answer);
-    }
-    answers
+/// extrapolation, which takes three meshes.
+pub(super) fn stated(rows: &[&Row], quantity: Quantity, reading: Reading) -> Vec<Stated> {
+    let of_mesh = |i: usize| match rows[..=i] {
+        [.., row] if row.program == OURS => ours(row, quantity),
+        [.., first, second, third] if reading == Reading::Extrapolated => {
+            are_successive(first, second).then_some(())?;
+            are_successive(second, third).then_some(())?;
+            let value = extrapolated(second, third, quantity);
+            let change = value - extrapolated(first, second, quantity);
+            let seconds = first.total_seconds() + second.total_seconds() + third.total_seconds();
+            Some(Stated { value, error: change.abs() / value, seconds })
+        }
+        [.., coarse, fine] if reading != Reading::Extrapolated && are_successive(coarse, fine) => {
+            let [before, value] = [coarse, fine].map(|row| of_peer(row, quantity, reading));
+            let error = (value - before).abs() / (2.0_f64.powf(order(quantity)) - 1.0) / value;
+            Some(Stated { value, error, seconds: coarse.total_seconds() + fine.total_seconds() })
+        }
+        _ => None,
+    };
+    (0..rows.len()).filter_map(of_mesh).collect()
 }
 
-fn ours(row: &Row, quantity: Quantity) -> Answer<'_> {
+/// Whether no mesh is missing between two. One is when a peer failed on it.
+fn are_successive(coarse: &Row, fine: &Row) -> bool {
+    2 * coarse.elements_per_wave == fine.elements_per_wave
+}
+
+fn order(quantity: Quantity) -> f64 {
+    if quantity == Quantity::Area { COUNTED_ORDER } else { SMOOTH_ORDER }
+}
+
+fn ours(row: &Row, quantity: Quantity) -> Option<Stated> {
     let (value, bar) = match quantity {
         Quantity::Area => (row.area.unwrap_or(row.area_counted), row.area_bar),
         Quantity::RmsPressure => (row.rms_pressure, row.rms_pressure_bar),
-        Quantity::MeanGap | Quantity::Penetration => (row.mean_gap, row.mean_gap_bar),
+        Quantity::MeanGap => (row.mean_gap, row.mean_gap_bar),
     };
-    let seconds = row.total_seconds();
-    Answer { row, value, seconds, stated: bar.map(|bar| Stated { error: bar / value, seconds }) }
+    Some(Stated { value, error: bar? / value, seconds: row.total_seconds() })
 }
 
 /// The value of a quantity on one mesh of a peer.
@@ -129,39 +118,22 @@ fn of_peer(row: &Row, quantity: Quantity, reading: Reading) -> f64 {
         (Quantity::Area, Reading::Calibrated) => row.area_counted - CALIBRATED * row.perimeter,
         (Quantity::Area, _) => row.area_counted,
         (Quantity::RmsPressure, _) => row.rms_pressure,
-        (Quantity::MeanGap | Quantity::Penetration, _) => row.mean_gap,
+        (Quantity::MeanGap, _) => row.mean_gap,
     }
 }
 
-fn compared<'a>(row: &'a Row, coarser: Option<&Row>, quantity: Quantity, reading: Reading) -> Answer<'a> {
-    let value = of_peer(row, quantity, reading);
-    let order = if quantity == Quantity::Area { COUNTED_ORDER } else { SMOOTH_ORDER };
-    let stated = coarser.map(|coarser| {
-        let change = (value - of_peer(coarser, quantity, reading)).abs();
-        let error = change / (2.0_f64.powf(order) - 1.0) / value;
-        Stated { error, seconds: row.total_seconds() + coarser.total_seconds() }
-    });
-    Answer { row, value, seconds: row.total_seconds(), stated }
-}
-
-fn extrapolated<'a>(row: &'a Row, coarser: &Row, quantity: Quantity, before: Option<Answer<'_>>) -> Answer<'a> {
-    let [coarse, fine] = [coarser, row].map(|row| of_peer(row, quantity, Reading::Reported));
-    let value = match quantity {
-        Quantity::Area => fine + (fine - coarse) / (2.0_f64.powf(COUNTED_ORDER) - 1.0),
-        _ => richardson(coarse, fine).value,
-    };
-    let stated = before.map(|before| Stated {
-        error: (value - before.value).abs() / value,
-        // Both extrapolations use the middle mesh.
-        seconds: row.total_seconds() + before.seconds,
-    });
-    Answer { row, value, seconds: row.total_seconds() + coarser.total_seconds(), stated }
+fn extrapolated(coarse: &Row, fine: &Row, quantity: Quantity) -> f64 {
+    let [before, value] = [coarse, fine].map(|row| of_peer(row, quantity, Reading::Reported));
+    match quantity {
+        Quantity::Area => value + (value - before) / (2.0_f64.powf(COUNTED_ORDER) - 1.0),
+        _ => richardson(before, value).value,
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::levels::tests::rows;
+    use crate::bench::record::tests::rows;
 
     /// A peer on three meshes.
     ///
@@ -176,55 +148,51 @@ mod tests {
         [(4, 1.0), (8, 5.0), (16, 25.0)].map(row).to_vec()
     }
 
-    fn of(rows: &[Row], quantity: Quantity, reading: Reading) -> Vec<Answer<'_>> {
-        answers(&rows.iter().collect::<Vec<_>>(), quantity, reading)
+    fn of(rows: &[Row], quantity: Quantity, reading: Reading) -> Vec<Stated> {
+        stated(&rows.iter().collect::<Vec<_>>(), quantity, reading)
     }
 
     #[test]
     fn a_count_states_the_change_and_takes_both_solves() {
         let rows = peer(0.1);
         let counted = of(&rows, Quantity::Area, Reading::Reported);
-        assert_eq!((counted.len(), counted[0].stated), (3, None));
-        let (finest, stated) = (counted[2], counted[2].stated.expect("a coarser mesh"));
+        assert_eq!(counted.len(), 2);
         // Counts converge with order 1, so the stated error is the true one.
-        assert!((stated.error * finest.value - 0.1 / 16.0).abs() < 1e-12, "{stated:?}");
-        assert!((finest.seconds - 25.0).abs() < 1e-12 && (stated.seconds - 30.0).abs() < 1e-12, "{finest:?}");
+        assert!((counted[1].error * counted[1].value - 0.1 / 16.0).abs() < 1e-12, "{counted:?}");
+        assert!((counted[1].seconds - 30.0).abs() < 1e-12, "{counted:?}");
         // The constant of the discretisation removes the whole error, another constant only a part of it.
-        let calibrated = of(&rows, Quantity::Area, Reading::Calibrated)[2];
-        let published = of(&rows, Quantity::Area, Reading::Published)[2];
+        let calibrated = of(&rows, Quantity::Area, Reading::Calibrated)[1];
+        let published = of(&rows, Quantity::Area, Reading::Published)[1];
         assert!((calibrated.value - 0.07).abs() < 0.0014 / 16.0, "{calibrated:?}");
         assert!((published.value - 0.07).abs() > 0.017 / 16.0, "{published:?}");
     }
 
     #[test]
-    fn extrapolations_take_two_solves_and_their_errors_three() {
+    fn extrapolations_state_an_error_after_three_solves() {
         let rows = peer(0.1);
         let areas = of(&rows, Quantity::Area, Reading::Extrapolated);
-        assert_eq!((areas.len(), areas[0].stated), (2, None));
-        let stated = areas[1].stated.expect("two extrapolations");
-        assert!((areas[1].value - 0.07).abs() < 1e-12 && stated.error < 1e-10, "{areas:?}");
-        assert!((areas[1].seconds - 30.0).abs() < 1e-12 && (stated.seconds - 31.0).abs() < 1e-12, "{areas:?}");
+        assert_eq!(areas.len(), 1);
+        assert!((areas[0].value - 0.07).abs() < 1e-12 && areas[0].error < 1e-10, "{areas:?}");
+        assert!((areas[0].seconds - 31.0).abs() < 1e-12, "{areas:?}");
         // The pressure converges with order 2, and is extrapolated with orders 1.5 and 2. A part of the finer error
         // remains.
-        let pressure = of(&rows, Quantity::RmsPressure, Reading::Extrapolated)[1];
-        let stated = pressure.stated.expect("two extrapolations");
-        assert!((pressure.value / 4e-3 - 1.0).abs() < 0.4 / 256.0, "{pressure:?}");
-        assert!((pressure.value / 4e-3 - 1.0).abs() < stated.error, "{pressure:?}");
+        let pressure = of(&rows, Quantity::RmsPressure, Reading::Extrapolated)[0];
+        let remains = (pressure.value / 4e-3 - 1.0).abs();
+        assert!(remains < 0.4 / 256.0 && remains < pressure.error, "{pressure:?}");
         // As reported, the error by order 1.5 is on the safe side.
-        let reported = of(&rows, Quantity::RmsPressure, Reading::Reported)[1];
-        assert!(reported.stated.expect("two meshes").error > reported.value / 4e-3 - 1.0, "{reported:?}");
+        let reported = of(&rows, Quantity::RmsPressure, Reading::Reported)[0];
+        assert!(reported.error > reported.value / 4e-3 - 1.0, "{reported:?}");
     }
 
     #[test]
     fn ours_are_the_bars_of_the_summary_and_a_gap_between_meshes_states_nothing() {
         let all = rows();
         let ours = of(&all[..3], Quantity::Area, Reading::Reported);
-        let stated = ours[1].stated.expect("a bar");
-        assert!((stated.error - all[1].area_bar.expect("a bar") / 0.0714).abs() < 1e-12, "{stated:?}");
-        assert!((stated.seconds - all[1].total_seconds()).abs() < 1e-12);
+        assert!((ours[1].error - all[1].area_bar.expect("a bar") / 0.0714).abs() < 1e-12, "{ours:?}");
+        assert!(ours.len() == 3 && (ours[1].seconds - all[1].total_seconds()).abs() < 1e-12);
         let mut rows = peer(0.1);
         rows.remove(1);
-        assert!(of(&rows, Quantity::Area, Reading::Reported).iter().all(|answer| answer.stated.is_none()));
+        assert!(of(&rows, Quantity::Area, Reading::Reported).is_empty());
         assert!(of(&rows, Quantity::Area, Reading::Extrapolated).is_empty());
     }
 }

@@ -8,9 +8,8 @@ use anyhow::{Context, Result};
 use rc_figures::numeric::median;
 use serde::{Deserialize, Serialize};
 
-use super::measure::Outcome;
-use super::scenes::Scene;
-use super::setting::{KernelName, Setting, typed};
+use super::rounds::Case;
+use super::setting::typed;
 
 /// One line of the file. Columns for which a program has no value are empty.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,72 +48,42 @@ pub(super) struct Row {
     pub(super) mean_gap_bar: Option<f64>,
 }
 
-/// Properties that distinguish the lines of one program, other than scene and mesh.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Family {
-    pub(super) program: String,
-    pub(super) method: String,
-    pub(super) kernel: String,
-    pub(super) border_level: usize,
-    pub(super) tolerance: String,
-}
-
-impl Family {
-    /// The family of our own solves with `setting`.
-    pub(super) fn ours(setting: &Setting) -> Self {
-        Self {
-            program: OURS.to_owned(),
-            method: setting.method.name().to_owned(),
-            kernel: setting.kernel.kernel().name().to_owned(),
-            border_level: setting.border_level,
-            tolerance: typed(setting.tolerance),
-        }
-    }
-
-    /// The family of a peer's solves.
-    ///
-    /// All peers have the point-collocated kernel on a uniform grid.
-    pub(super) fn peer(program: &str, tolerance: &str) -> Self {
-        Self {
-            program: program.to_owned(),
-            method: rc_solver::Method::Uniform.name().to_owned(),
-            kernel: KernelName::Spectral.kernel().name().to_owned(),
-            border_level: 0,
-            tolerance: tolerance.to_owned(),
-        }
-    }
-}
-
 /// Name of this program among the others.
 pub(super) const OURS: &str = "rc";
 
+/// Properties that distinguish the lines of one scene, other than the mesh.
+///
+/// They are program, method, kernel, border level and tolerance.
+pub(super) type Family<'a> = (&'a str, &'a str, &'a str, usize, &'a str);
+
 impl Row {
-    /// The line of repeated solves; `None` without a solve.
+    /// The line of a case; `None` without a solve.
     ///
     /// The results are those of the first solve, since all solves give the same.
-    pub(super) fn of(scene: &Scene, family: &Family, elements_per_wave: usize, repeats: &[Outcome]) -> Option<Self> {
-        let first = repeats.first()?;
-        let Family { program, method, kernel, border_level, tolerance } = family.clone();
-        let n_smallest = (scene.side(elements_per_wave << border_level) as f64).powi(2);
-        let Spread { median: seconds, min, max } = Spread::of(repeats.iter().map(|one| one.seconds));
+    pub(super) fn of(case: &Case) -> Option<Self> {
+        let Case { scene, peer, setting, outcomes, .. } = case;
+        let first = outcomes.first()?;
+        let n_smallest = (scene.side(setting.elements_per_wave << setting.border_level) as f64).powi(2);
+        let Spread { median: seconds, min, max } = Spread::of(outcomes.iter().map(|one| one.seconds));
         let bar = |bar: Option<f64>| bar.map(|bar| rounded(bar, 3));
+        let takes_tolerance = peer.is_none_or(|kind| kind.takes_tolerance);
         Some(Self {
             scene: scene.name.to_owned(),
-            program,
-            method,
-            kernel,
-            border_level,
-            elements_per_wave,
-            tolerance,
+            program: peer.map_or(OURS, |kind| kind.name).to_owned(),
+            method: setting.method().name().to_owned(),
+            kernel: setting.kernel.kernel().name().to_owned(),
+            border_level: setting.border_level,
+            elements_per_wave: setting.elements_per_wave,
+            tolerance: if takes_tolerance { typed(setting.tolerance) } else { "default".to_owned() },
             status: first.status.clone(),
             iterations: first.iterations,
             applications: first.applications,
             elements: first.elements,
-            repeats: repeats.len(),
+            repeats: outcomes.len(),
             seconds: rounded(seconds, 4),
             seconds_min: rounded(min, 4),
             seconds_max: rounded(max, 4),
-            observables_seconds: rounded(median(repeats.iter().map(|one| one.observables_seconds).collect()), 4),
+            observables_seconds: rounded(median(outcomes.iter().map(|one| one.observables_seconds).collect()), 4),
             memory_mb: first.memory_mb.map(|memory| rounded(memory, 3)),
             area_counted: rounded(first.area_counted, 9),
             perimeter: rounded(first.edges as f64 / n_smallest, 9),
@@ -127,14 +96,8 @@ impl Row {
         })
     }
 
-    pub(super) fn family(&self) -> Family {
-        Family {
-            program: self.program.clone(),
-            method: self.method.clone(),
-            kernel: self.kernel.clone(),
-            border_level: self.border_level,
-            tolerance: self.tolerance.clone(),
-        }
+    pub(super) fn family(&self) -> Family<'_> {
+        (&self.program, &self.method, &self.kernel, self.border_level, &self.tolerance)
     }
 
     /// Seconds of an answer: the solve, and the evaluation of the observables.
@@ -200,7 +163,10 @@ pub(super) mod tests {
     use rc_solver::Tolerance;
 
     use super::*;
+    use crate::bench::measure::Outcome;
+    use crate::bench::peers::TAMAAS;
     use crate::bench::scenes::SCENES;
+    use crate::bench::setting::Setting;
 
     /// An outcome of a solve that took `seconds`.
     pub(in crate::bench) fn outcome(seconds: f64, area: Option<f64>) -> Outcome {
@@ -210,7 +176,7 @@ pub(super) mod tests {
             applications: None,
             elements: Some(100),
             seconds,
-            observables_seconds: 0.25,
+            observables_seconds: if area.is_some() { 0.25 } else { 0.0 },
             memory_mb: Some(12.3456),
             area_counted: 0.07,
             area,
@@ -224,15 +190,33 @@ pub(super) mod tests {
         }
     }
 
+    /// Lines of the first scene: ours on three meshes, a peer's on two.
+    ///
+    /// The true area is 0.07.
+    pub(in crate::bench) fn rows() -> Vec<Row> {
+        let ours = [(4, 0.5, 0.07), (8, 1.0, 0.0714), (16, 4.0, 0.07035)].map(|(mesh, seconds, area)| {
+            let mut case = Case::ours(SCENES[0], Setting::adaptive(0, mesh, Tolerance::Auto), 2);
+            case.outcomes.push(outcome(seconds, Some(area)));
+            Row::of(&case).expect("one repeat")
+        });
+        let peer = [(4, 30.0, 0.09), (8, 90.0, 0.0721)].map(|(mesh, seconds, counted)| {
+            let mut case = Case::of_peer(SCENES[0], TAMAAS, mesh, Tolerance::Relative(1e-6));
+            case.outcomes.push(Outcome { area_counted: counted, ..outcome(seconds, None) });
+            Row::of(&case).expect("one repeat")
+        });
+        ours.into_iter().chain(peer).collect()
+    }
+
     #[test]
     fn a_line_has_the_median_time_and_survives_csv() {
-        let family = Family::ours(&Setting::adaptive(2, 8, Tolerance::Auto));
-        let repeats = [3.0, 1.0, 2.0].map(|seconds| outcome(seconds, Some(0.068)));
-        let row = Row::of(&SCENES[0], &family, 8, &repeats).expect("three repeats");
+        let mut case = Case::ours(SCENES[0], Setting::adaptive(2, 8, Tolerance::Auto), 2);
+        assert_eq!(Row::of(&case), None);
+        case.outcomes.extend([3.0, 1.0, 2.0].map(|seconds| outcome(seconds, Some(0.068))));
+        let row = Row::of(&case).expect("three repeats");
         assert_eq!((row.seconds, row.total_seconds(), row.area, row.memory_mb), (2.0, 2.25, Some(0.068), Some(12.3)));
         assert_eq!((row.seconds_min, row.seconds_max, row.repeats), (1.0, 3.0, 3));
         assert_eq!((row.area_bar, row.rms_pressure_bar, row.mean_gap_bar), (Some(6.8e-4), Some(4e-6), None));
-        assert_eq!(row.family(), family);
+        assert_eq!(row.family(), ("rc", "adaptive", "love", 2, "auto"));
         let text = to_csv(std::slice::from_ref(&row)).expect("plain values");
         assert_eq!(from_csv::<Row>(&text, "bench.csv").expect("its own output"), [row]);
         let broken = from_csv::<Row>(&text.replace("0.068", "much"), "bench.csv").err();
@@ -241,11 +225,10 @@ pub(super) mod tests {
 
     #[test]
     fn the_perimeter_is_that_of_the_smallest_elements() {
-        let perimeter =
-            |family: &Family| Row::of(&SCENES[0], family, 4, &[outcome(1.0, None)]).map(|row| row.perimeter);
-        assert_eq!(perimeter(&Family::peer("tamaas", "1e-6")), Some(rounded(1000.0 / 65536.0, 9)));
-        let halved = Family::ours(&Setting::adaptive(1, 4, Tolerance::Auto));
-        assert_eq!(perimeter(&halved), Some(rounded(1000.0 / 4.0 / 65536.0, 9)));
+        let mut case = Case::ours(SCENES[0], Setting::adaptive(1, 4, Tolerance::Auto), 2);
+        case.outcomes.push(outcome(1.0, None));
+        assert_eq!(Row::of(&case).map(|row| row.perimeter), Some(rounded(1000.0 / 4.0 / 65536.0, 9)));
+        assert_eq!((rows()[3].program.as_str(), rows()[3].tolerance.as_str()), ("tamaas", "1e-6"));
     }
 
     #[test]

@@ -19,22 +19,19 @@ pub(super) enum Quantity {
     Area,
     /// Root mean square pressure, in E*.
     RmsPressure,
-    /// Penetration Δ, in λ, from the highest point of the surface.
-    Penetration,
     /// Mean gap, in λ.
     MeanGap,
 }
 
 impl Quantity {
-    /// The quantities whose errors are shown. The error of the mean gap is the same as that of the penetration.
-    pub(super) const COMPARED: [Self; 3] = [Self::Area, Self::RmsPressure, Self::Penetration];
+    /// All quantities, in the order of tables and pictures.
+    pub(super) const ALL: [Self; 3] = [Self::Area, Self::RmsPressure, Self::MeanGap];
 
     /// Name in sentences.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Area => "area",
             Self::RmsPressure => "rms pressure",
-            Self::Penetration => "penetration",
             Self::MeanGap => "mean gap",
         }
     }
@@ -52,15 +49,6 @@ pub(super) struct ReferenceRow {
     pub(super) other_kernel: f64,
     /// Estimated error of `other_kernel`.
     pub(super) other_uncertainty: f64,
-}
-
-impl ReferenceRow {
-    /// The uncertainty that the documents state.
-    ///
-    /// It is at least the difference between the limits of the two kernels, since both have the same true limit.
-    pub(super) fn stated_uncertainty(&self) -> f64 {
-        self.uncertainty.max((self.value - self.other_kernel).abs())
-    }
 }
 
 /// The reference values by scene and quantity.
@@ -95,33 +83,20 @@ impl References {
     }
 
     /// Relative error of a value, with its sign.
-    ///
-    /// For a penetration, `value` is the mean gap, and its error is divided by the penetration. Penetration and mean
-    /// gap add up to the height of the highest point, and how close a grid's points are to that point says nothing
-    /// about a solver.
     pub(super) fn error(&self, scene: &str, quantity: Quantity, value: f64) -> Option<f64> {
-        let reference = self.row(scene, quantity)?.value;
-        if quantity == Quantity::Penetration {
-            return Some((self.row(scene, Quantity::MeanGap)?.value - value) / reference);
-        }
-        Some(value / reference - 1.0)
+        Some(value / self.row(scene, quantity)?.value - 1.0)
     }
 }
 
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::bench::levels::levels;
     use crate::bench::record::to_csv;
     use crate::bench::scenes::SCENES;
+    use crate::bench::times::LEVELS;
 
-    const ALL: [Quantity; 4] = [Quantity::Area, Quantity::RmsPressure, Quantity::Penetration, Quantity::MeanGap];
-
-    const MEAN_GAP: f64 = 2.5;
-
-    /// Reference values of one scene.
-    pub(in crate::bench) fn references(scene: &str, [area, rms_pressure, penetration]: [f64; 3]) -> References {
-        let values = [area, rms_pressure, penetration, MEAN_GAP].into_iter().zip(ALL);
+    /// Reference values of one scene: area, rms pressure and mean gap.
+    pub(in crate::bench) fn references(scene: &str, values: [f64; 3]) -> References {
         let row = |(value, quantity)| ReferenceRow {
             scene: scene.to_owned(),
             quantity,
@@ -130,53 +105,36 @@ pub(super) mod tests {
             other_kernel: value,
             other_uncertainty: 1e-5 * value,
         };
-        let text = to_csv(&values.map(row).collect::<Vec<_>>()).expect("plain values");
-        References::from_text(&text).expect("its own output")
+        let rows: Vec<ReferenceRow> = values.into_iter().zip(Quantity::ALL).map(row).collect();
+        References::from_text(&to_csv(&rows).expect("plain values")).expect("its own output")
     }
 
     /// Each scene has its values, and the limits of the two kernels agree.
+    ///
+    /// The values are good enough to compare errors of every level with.
     #[test]
     fn the_kernels_have_one_limit() {
         let references = References::read().expect("the file of the repository");
         for scene in SCENES {
-            for quantity in ALL {
+            for quantity in Quantity::ALL {
                 let row = references.row(scene.name, quantity);
                 let row = row.unwrap_or_else(|| panic!("no {} of {}", quantity.name(), scene.name));
                 let (apart, allowed) = ((row.value - row.other_kernel).abs(), row.uncertainty + row.other_uncertainty);
                 assert!(apart <= allowed, "{row:?}: {apart:e} apart, {allowed:e} allowed");
                 assert!(row.uncertainty < 1e-4 * row.value, "{row:?} is not good enough to compare with");
+                let levels = LEVELS.into_iter().filter(|(of, _)| *of == quantity).map(|(_, level)| level);
+                let smallest = levels.fold(f64::INFINITY, f64::min);
+                let uncertainty = row.uncertainty.max(apart);
+                assert!(uncertainty <= smallest * row.value / 3.0, "{row:?} is not good enough for {smallest:e}");
             }
         }
     }
 
-    /// The stated uncertainty covers the difference of the kernels.
-    ///
-    /// It is small compared with every error level.
     #[test]
-    fn stated_uncertainties_cover_the_disagreement_of_the_kernels() {
-        let references = References::read().expect("the file of the repository");
-        let mut n_raised = 0;
-        for scene in SCENES {
-            for quantity in ALL {
-                let row = references.row(scene.name, quantity).expect("a value");
-                let (stated, apart) = (row.stated_uncertainty(), (row.value - row.other_kernel).abs());
-                assert!(stated >= apart && stated >= row.uncertainty, "{row:?}: {stated:e}");
-                n_raised += usize::from(stated > row.uncertainty);
-                let wanted = levels().filter(|(other, _)| *other == quantity).map(|(_, level)| level);
-                let wanted = wanted.fold(f64::INFINITY, f64::min);
-                assert!(stated <= wanted * row.value / 3.0, "{row:?} is not good enough for {wanted:e}");
-            }
-        }
-        assert!(n_raised > 0, "the kernels agree everywhere: then this test checks nothing");
-    }
-
-    #[test]
-    fn the_error_of_a_penetration_is_that_of_the_gap() {
-        let references = references("paper", [0.07, 4e-3, 2.0]);
+    fn errors_are_relative() {
+        let references = references("paper", [0.07, 4e-3, 2.5]);
         let error = |quantity, value| references.error("paper", quantity, value).unwrap_or(f64::NAN);
-        let penetration = error(Quantity::Penetration, MEAN_GAP + 0.02);
-        assert!((penetration + 0.01).abs() < 1e-12, "{penetration}");
-        assert!((error(Quantity::MeanGap, MEAN_GAP + 0.02) - 0.008).abs() < 1e-12);
+        assert!((error(Quantity::MeanGap, 2.52) - 0.008).abs() < 1e-12);
         assert!((error(Quantity::Area, 0.0707) - 0.01).abs() < 1e-12);
         assert_eq!(references.error("unknown", Quantity::Area, 0.07), None);
     }

@@ -2,54 +2,67 @@
 //!
 //! Times are by number of threads and by area in contact.
 
-pub(super) mod row;
-pub(super) mod tables;
+use rc_solver::Tolerance;
+use serde::{Deserialize, Serialize};
 
-use std::path::Path;
-use std::time::Instant;
-
-use anyhow::{Context, Result};
-use rc_solver::{Method, Tolerance};
-
-use self::row::{Part, ScaleRow};
-use super::child;
-use super::measure::Outcome;
-use super::peers::{ASPHER, Peer, Question};
+use super::machine::all_threads;
+use super::peers::ASPHER;
 use super::record::{OURS, Spread, rounded};
-use super::round::{Heights, tell};
+use super::rounds::Case;
 use super::scenes::{SCALE_SCENES, SCENES, Scene};
-use super::setting::{CERTIFIED, KernelName, Setting, of_peer, typed};
+use super::setting::{CERTIFIED, KernelName, Setting, typed};
 
-/// Total seconds of a case after which it is not repeated.
-const ENOUGH: f64 = 60.0;
-
-/// One problem with one program and one number of threads.
-struct Case {
-    part: Part,
-    scene: Scene,
-    setting: Setting,
-    threads: usize,
-    by_peer: bool,
-    outcomes: Vec<Outcome>,
+/// One line of `data/bench/scale.csv`: a solve of one scene by one program with a given number of threads.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct ScaleRow {
+    pub(super) part: Part,
+    pub(super) waves: usize,
+    /// σ0/E*.
+    pub(super) load: f64,
+    /// Elements along a side of the cell.
+    pub(super) side: usize,
+    pub(super) program: String,
+    pub(super) method: String,
+    pub(super) threads: usize,
+    pub(super) tolerance: String,
+    pub(super) status: String,
+    pub(super) iterations: Option<u64>,
+    pub(super) applications: Option<u64>,
+    /// Fraction of the cells whose gap was computed.
+    pub(super) cells_evaluated: Option<f64>,
+    /// Area by counting, which is the same for every program.
+    pub(super) area_counted: f64,
+    pub(super) repeats: usize,
+    /// Median seconds; then the fastest and the slowest. Our times include the evaluation of the observables.
+    pub(super) seconds: f64,
+    pub(super) seconds_min: f64,
+    pub(super) seconds_max: f64,
+    pub(super) memory_mb: Option<f64>,
 }
 
-impl Case {
-    fn is_done(&self) -> bool {
-        self.outcomes.iter().map(|outcome| outcome.seconds).sum::<f64>() > ENOUGH
-    }
+/// The purpose of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Part {
+    /// Several sizes of grids, with several numbers of threads.
+    Grids,
+    /// Several loads on one grid.
+    Contact,
+}
 
-    fn row(&self) -> Option<ScaleRow> {
-        let Self { part, scene, setting, threads, by_peer, outcomes } = self;
+impl ScaleRow {
+    /// The line of a case; `None` without a solve.
+    pub(super) fn of(part: Part, case: &Case) -> Option<Self> {
+        let Case { scene, peer, setting, threads, outcomes, .. } = case;
         let first = outcomes.first()?;
         let spread = Spread::of(outcomes.iter().map(|one| one.seconds + one.observables_seconds));
-        let method = if *by_peer { Method::Uniform } else { setting.method };
-        Some(ScaleRow {
-            part: *part,
+        Some(Self {
+            part,
             waves: scene.waves,
             load: scene.load,
             side: scene.side(setting.elements_per_wave),
-            program: if *by_peer { ASPHER.name } else { OURS }.to_owned(),
-            method: method.name().to_owned(),
+            program: peer.map_or(OURS, |kind| kind.name).to_owned(),
+            method: setting.method().name().to_owned(),
             threads: *threads,
             tolerance: typed(setting.tolerance),
             status: first.status.clone(),
@@ -73,94 +86,43 @@ const COARSE: usize = 16;
 /// Largest grid of a peer, and of solves with fewer threads than the machine has.
 const LARGEST_COMPARED: usize = 4096;
 
-/// The cases, by scene; `quick` selects the two smallest scenes.
-fn cases(quick: bool, with_peer: bool) -> Vec<Case> {
-    let all = std::thread::available_parallelism().map_or(1, usize::from);
-    let named = |names: &[&str]| -> Vec<Scene> {
-        let scenes = SCENES.into_iter().chain(SCALE_SCENES);
-        let mut found: Vec<Scene> = scenes.filter(|scene| names.contains(&scene.name)).collect();
-        // Coarse grids are first. Only then is the peak memory of a peer's process that of its last solve.
-        found.sort_by_key(|scene| scene.waves);
-        found
-    };
-    let grids: &[&str] =
+/// The cases on grids of several sizes; `quick` selects the two smallest scenes.
+///
+/// Coarse grids are first. Only then is the peak memory of a peer's process that of its last solve.
+pub(super) fn grids(quick: bool) -> Vec<Case> {
+    let names: &[&str] =
         if quick { &["waves-16", "waves-32"] } else { &["paper", "waves-128", "waves-512", "waves-1024"] };
     let mut cases = Vec::new();
-    let mut add = |part, scene, setting, threads, by_peer| {
-        cases.push(Case { part, scene, setting, threads, by_peer, outcomes: Vec::new() });
-    };
-    for scene in named(grids) {
-        let is_compared = scene.side(FINE) <= LARGEST_COMPARED;
-        let setting = Setting::adaptive(0, FINE, if is_compared { CERTIFIED } else { Tolerance::DEFAULT });
-        for threads in thread_counts(all).into_iter().filter(|&threads| is_compared || threads == all) {
-            add(Part::Grids, scene, setting, threads, false);
+    let scenes = SCENES.into_iter().chain(SCALE_SCENES).filter(|scene| names.contains(&scene.name));
+    for scene in scenes {
+        if scene.side(FINE) > LARGEST_COMPARED {
+            cases.push(Case::ours(scene, Setting::adaptive(0, FINE, Tolerance::DEFAULT), all_threads()));
+            continue;
         }
-        if is_compared && with_peer {
-            add(Part::Grids, scene, setting, all, true);
-        }
+        let setting = Setting::adaptive(0, FINE, CERTIFIED);
+        cases.extend(thread_counts(all_threads()).into_iter().map(|threads| Case::ours(scene, setting, threads)));
+        cases.push(Case::of_peer(scene, ASPHER, FINE, CERTIFIED));
     }
-    let pressed = SCALE_SCENES.into_iter().filter(|scene| scene.waves == SCENES[0].waves).chain([SCENES[0]]);
-    let mut loads: Vec<Scene> = if quick { named(&["waves-16"]) } else { pressed.collect() };
-    loads.sort_by(|a, b| a.load.total_cmp(&b.load));
-    for scene in loads {
-        add(Part::Contact, scene, Setting::adaptive(0, COARSE, Tolerance::DEFAULT), all, false);
-        add(Part::Contact, scene, Setting::uniform(KernelName::Love, COARSE, Tolerance::DEFAULT), all, false);
-    }
+    cases.sort_by_key(|case| case.scene.waves);
     cases
+}
+
+/// The cases of one surface under several loads, lightest first, by both methods.
+pub(super) fn loads(quick: bool) -> Vec<Case> {
+    let pressed = SCALE_SCENES.into_iter().filter(|scene| scene.waves == SCENES[0].waves).chain([SCENES[0]]);
+    let mut loads: Vec<Scene> = if quick { vec![SCENES[8]] } else { pressed.collect() };
+    loads.sort_by(|a, b| a.load.total_cmp(&b.load));
+    let settings = [
+        Setting::adaptive(0, COARSE, Tolerance::DEFAULT),
+        Setting::uniform(KernelName::Love, COARSE, Tolerance::DEFAULT),
+    ];
+    loads.into_iter().flat_map(|scene| settings.map(|setting| Case::ours(scene, setting, all_threads()))).collect()
 }
 
 /// Numbers of threads: 1, 2, 4, ... and all.
 fn thread_counts(all: usize) -> Vec<usize> {
     let powers = std::iter::successors(Some(1), |threads| Some(2 * threads));
     powers.take_while(|&threads| threads < all).chain([all]).collect()
-}
-
-/// Measurements of a run on large grids.
-#[derive(Debug, Default)]
-pub(super) struct ScaleRun {
-    pub(super) rows: Vec<ScaleRow>,
-    /// Version of the peer, if it ran.
-    pub(super) peer: Option<String>,
-    /// Number of solves that failed and were reported.
-    pub(super) n_failed: usize,
-    /// Seconds of the whole run.
-    pub(super) seconds: f64,
-}
-
-/// Solves every case up to `repeats` times, the peer's only if `python` has it.
-///
-/// `quick` selects small scenes.
-pub(super) fn run(repeats: usize, quick: bool, python: Option<&Path>) -> ScaleRun {
-    let start = Instant::now();
-    let mut peer = python.and_then(|python| tell(Peer::start(python, &ASPHER)));
-    let mut cases = cases(quick, peer.is_some());
-    let mut n_failed = 0;
-    for round in 0..repeats {
-        // A case that failed is not solved again.
-        for case in cases.iter_mut().filter(|case| !case.is_done() && case.outcomes.len() == round) {
-            let outcome = tell(solve(case, peer.as_mut()));
-            n_failed += usize::from(outcome.is_none());
-            case.outcomes.extend(outcome);
-        }
-    }
-    ScaleRun {
-        rows: cases.iter().filter_map(Case::row).collect(),
-        peer: peer.map(|peer| peer.version.clone()),
-        n_failed,
-        seconds: start.elapsed().as_secs_f64(),
-    }
-}
-
-fn solve(case: &Case, peer: Option<&mut Peer>) -> Result<Outcome> {
-    let Case { scene, setting, threads, by_peer, .. } = case;
-    if !by_peer {
-        return child::solve(scene, setting, Some(*threads));
-    }
-    let heights = Heights::of(scene)?;
-    let path = heights.on(scene, setting.elements_per_wave)?;
-    let peer = peer.context("a case of a peer that did not start")?;
-    let tolerance = Some(of_peer(setting.tolerance, setting.elements_per_wave));
-    peer.solve(&Question { heights: &path, stride: 1, load: scene.load, tolerance })
 }
 
 #[cfg(test)]
@@ -205,30 +167,28 @@ pub(super) mod tests {
 
     #[test]
     fn cases_are_those_that_are_promised() {
-        let cases = cases(false, true);
         let sides = |by_peer| {
-            let of = cases.iter().filter(|case| case.part == Part::Grids && case.by_peer == by_peer);
+            let of = grids(false).into_iter().filter(|case| case.peer.is_some() == by_peer);
             let mut sides: Vec<usize> = of.map(|case| case.scene.side(case.setting.elements_per_wave)).collect();
             sides.dedup();
             sides
         };
         assert_eq!((sides(false), sides(true)), (vec![2048, 4096, 16384, 32768], vec![2048, 4096]));
-        let loads: Vec<f64> =
-            cases.iter().filter(|case| case.part == Part::Contact).map(|case| case.scene.load).collect();
+        let loads: Vec<f64> = loads(false).into_iter().map(|case| case.scene.load).collect();
         assert!(loads.len() == 14 && loads.is_sorted(), "{loads:?}");
         assert_eq!([1, 2, 3, 8].map(|all| thread_counts(all).len()), [1, 2, 3, 4]);
     }
 
     #[test]
     fn a_case_has_its_line_when_it_was_solved() {
-        let mut case = super::cases(true, false).remove(0);
-        assert!(case.row().is_none());
+        let mut case = grids(true).remove(0);
+        assert!(ScaleRow::of(Part::Grids, &case).is_none());
         let outcome = |seconds| crate::bench::record::tests::outcome(seconds, Some(0.07));
         case.outcomes = [3.0, 1.0, 2.0].map(outcome).to_vec();
-        let row = case.row().expect("a solved case");
+        let row = ScaleRow::of(Part::Grids, &case).expect("a solved case");
         // The evaluation of the observables takes a quarter of a second each time.
         let times = [row.seconds, row.seconds_min, row.seconds_max];
         assert!(times.iter().zip([2.25, 1.25, 3.25]).all(|(a, b)| (a - b).abs() < 1e-12), "{row:?}");
-        assert!(row.repeats == 3 && row.side == 32 * row.waves && !case.is_done(), "{row:?}");
+        assert!(row.repeats == 3 && row.side == 32 * row.waves, "{row:?}");
     }
 }

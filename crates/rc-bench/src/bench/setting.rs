@@ -1,12 +1,12 @@
 //! Settings of a solve: method, kernel, mesh, tolerance.
 
-use anyhow::Result;
-use rc_core::Kernel;
-use rc_kernel::{Love, Spectral};
-use serde::{Deserialize, Serialize};
 use std::fmt;
 
+use rc_core::Kernel;
+use rc_kernel::{Love, Spectral};
 use rc_solver::{Method, Tolerance};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::scenes::Scene;
 
@@ -42,24 +42,29 @@ impl KernelName {
 }
 
 /// One way to solve a scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Setting {
-    pub(super) method: Method,
+    is_adaptive: bool,
     pub(super) kernel: KernelName,
     /// Number of times that elements at edges of contacts are halved.
     pub(super) border_level: usize,
     /// Elements of the grid for the shortest wave.
     pub(super) elements_per_wave: usize,
+    #[serde(serialize_with = "write_tolerance", deserialize_with = "read_tolerance")]
     pub(super) tolerance: Tolerance,
 }
 
 impl Setting {
     pub(super) fn uniform(kernel: KernelName, elements_per_wave: usize, tolerance: Tolerance) -> Self {
-        Self { method: Method::Uniform, kernel, border_level: 0, elements_per_wave, tolerance }
+        Self { is_adaptive: false, kernel, border_level: 0, elements_per_wave, tolerance }
     }
 
     pub(super) fn adaptive(border_level: usize, elements_per_wave: usize, tolerance: Tolerance) -> Self {
-        Self { method: Method::Adaptive, kernel: KernelName::Love, border_level, elements_per_wave, tolerance }
+        Self { is_adaptive: true, kernel: KernelName::Love, border_level, elements_per_wave, tolerance }
+    }
+
+    pub(super) fn method(&self) -> Method {
+        if self.is_adaptive { Method::Adaptive } else { Method::Uniform }
     }
 
     /// Every setting on one mesh of a scene, without those that have too many elements.
@@ -98,15 +103,17 @@ pub(super) fn typed(tolerance: Tolerance) -> String {
 /// First word of a tolerance of the energy error.
 const ENERGY: &str = "energy ";
 
-/// The tolerance that [`typed`] wrote as `text`.
-///
-/// # Errors
-/// When `text` is not a tolerance.
-pub(super) fn parse_tolerance(text: &str) -> Result<Tolerance> {
+fn write_tolerance<S: Serializer>(tolerance: &Tolerance, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(&typed(*tolerance))
+}
+
+/// Reads what [`typed`] writes.
+fn read_tolerance<'a, D: Deserializer<'a>>(from: D) -> Result<Tolerance, D::Error> {
+    let text = String::deserialize(from)?;
     Ok(match text.strip_prefix(ENERGY) {
-        Some(number) => Tolerance::Energy(number.parse()?),
+        Some(number) => Tolerance::Energy(number.parse().map_err(D::Error::custom)?),
         None if text == "auto" => Tolerance::Auto,
-        None => Tolerance::Relative(text.parse()?),
+        None => Tolerance::Relative(text.parse().map_err(D::Error::custom)?),
     })
 }
 
@@ -123,10 +130,9 @@ pub(super) fn of_peer(tolerance: Tolerance, elements_per_wave: usize) -> f64 {
 
 impl fmt::Display for Setting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { method, kernel, border_level, elements_per_wave, tolerance } = *self;
-        let kernel = kernel.kernel().name();
-        write!(f, "{method} {kernel}")?;
-        if method == Method::Adaptive {
+        let Self { is_adaptive, kernel, border_level, elements_per_wave, tolerance } = *self;
+        write!(f, "{} {}", self.method(), kernel.kernel().name())?;
+        if is_adaptive {
             write!(f, ", border level {border_level}")?;
         }
         write!(f, ", λ_min/{elements_per_wave}, tolerance {}", typed(tolerance))
@@ -147,17 +153,20 @@ mod tests {
                 for setting in settings {
                     let side = scene.side(mesh << setting.border_level);
                     assert!(side <= SMALLEST_ELEMENTS.1, "{}: {setting}", scene.name);
-                    assert!(setting.method == Method::Adaptive || side <= LARGEST_UNIFORM, "{}: {setting}", scene.name);
+                    assert!(setting.is_adaptive || side <= LARGEST_UNIFORM, "{}: {setting}", scene.name);
                 }
             }
         }
     }
 
     #[test]
-    fn a_setting_is_written_for_people() {
+    fn a_setting_is_written_for_people_and_for_processes() {
         let setting = Setting::adaptive(2, 8, Tolerance::Auto);
         assert_eq!(setting.to_string(), "adaptive love, border level 2, λ_min/8, tolerance auto");
-        let setting = Setting::uniform(KernelName::Spectral, 4, CERTIFIED);
-        assert_eq!(setting.to_string(), "uniform spectral, λ_min/4, tolerance 1e-6");
+        for tolerance in [CERTIFIED, Tolerance::Auto, Tolerance::DEFAULT] {
+            let setting = Setting::uniform(KernelName::Spectral, 4, tolerance);
+            let text = serde_json::to_string(&setting).expect("plain data");
+            assert_eq!(serde_json::from_str::<Setting>(&text).ok(), Some(setting), "{text}");
+        }
     }
 }

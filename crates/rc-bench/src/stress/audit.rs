@@ -2,7 +2,6 @@
 
 use anyhow::Result;
 use rc_core::{Field, Grid, Operator};
-use rc_kernel::Love;
 use rc_solver::{Control, DirectSum, MultilevelOperator, UniformOperator};
 
 use super::solved::{Method, Solved};
@@ -46,12 +45,8 @@ pub(crate) struct Audit {
 impl Audit {
     /// The audit of a solution. It does not use the solution's own certificate.
     pub(crate) fn of(heights: &Field, solved: &Solved, method: Method, control: Control) -> Result<Self> {
-        Ok(Self::of_pressure(heights, &solved.pressure, &displacement(&solved.pressure, method)?, control))
-    }
-
-    /// The audit of a pressure and the displacement that it causes.
-    pub(crate) fn of_pressure(heights: &Field, pressure: &Field, displacement: &[f64], control: Control) -> Self {
-        Self::of_gaps(heights, pressure, &gaps(heights, displacement), control)
+        let displacement = displacement(&solved.pressure, method)?;
+        Ok(Self::of_gaps(heights, &solved.pressure, &gaps(heights, &displacement), control))
     }
 
     /// The energy error that gaps of the size `gap` times H can cause.
@@ -118,7 +113,7 @@ pub(crate) fn load_of_one_element(heights: &Field, method: Method, penetration: 
 ///
 /// It is the multilevel operator for the uniform grid if the grid allows it. Otherwise it is a direct sum on small
 /// grids, and a Fourier transform on others.
-pub(crate) fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>> {
+fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>> {
     // A constant pressure displaces nothing. The rounding of a large one would drown the displacement of the rest.
     let (grid, mean) = (pressure.grid(), pressure.mean());
     let p: Vec<f64> = pressure.values().iter().map(|p| p - mean).collect();
@@ -136,7 +131,7 @@ pub(crate) fn displacement(pressure: &Field, method: Method) -> Result<Vec<f64>>
 /// L p on a square grid by the multilevel operator.
 ///
 /// The base grid has `base` elements per side. All elements are on the finest level.
-pub(crate) fn multilevel(grid: Grid, p: &[f64], base: usize) -> Result<Vec<f64>> {
+fn multilevel(grid: Grid, p: &[f64], base: usize) -> Result<Vec<f64>> {
     let side = grid.nx();
     let per_side = (side / TILE) as u32;
     let places = (0..per_side).flat_map(|row| (0..per_side).map(move |column| [column, row])).collect();
@@ -156,11 +151,4 @@ pub(crate) fn multilevel(grid: Grid, p: &[f64], base: usize) -> Result<Vec<f64>>
 
 fn can_be_multilevel(grid: Grid) -> bool {
     grid.is_square() && grid.nx().is_multiple_of(2 * TILE)
-}
-
-/// L p of Love's squares by direct summation, for small grids.
-pub(crate) fn direct(pressure: &Field) -> Vec<f64> {
-    let mut v = vec![0.0; pressure.values().len()];
-    DirectSum::new(pressure.grid(), &Love).apply(pressure.values(), &mut v, &mut []);
-    v
 }

@@ -33,6 +33,7 @@ const SAME_HEIGHT: f64 = 1e-5;
 const SAME_CONTROL: f64 = 1e-6;
 
 /// Heights on which a mesh is made.
+#[derive(Debug)]
 enum Relief {
     /// The paper's surface with this many waves and Hurst exponent.
     Waves(usize, f64),
@@ -82,19 +83,11 @@ impl MeshScene {
     }
 
     fn name(&self) -> String {
-        let of_cell = self.name_of_cell();
-        if self.boundary == Boundary::Free { format!("patch: {of_cell}") } else { of_cell }
-    }
-
-    fn name_of_cell(&self) -> String {
-        let Self { base, side, border_level, load, tolerance, .. } = self;
-        let relief = match self.relief {
-            Relief::Waves(waves, hurst) => format!("N = {waves} H = {hurst}"),
-            Relief::Noise => "white noise".to_owned(),
-            Relief::Chequered => "chequered".to_owned(),
-            Relief::Map([nx, ny]) => return format!("map of {nx} x {ny} load {load:.0e} to {tolerance:.0e}"),
-        };
-        format!("{relief} base {base} side {side} border level {border_level} load {load:.0e} to {tolerance:.0e}")
+        let Self { relief, base, side, border_level, load, tolerance, boundary } = self;
+        let cell = if *boundary == Boundary::Free { "patch: " } else { "" };
+        format!(
+            "{cell}{relief:?} base {base} side {side} border level {border_level} load {load:.0e} to {tolerance:.0e}"
+        )
     }
 }
 

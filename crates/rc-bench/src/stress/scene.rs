@@ -1,30 +1,29 @@
 //! A scene of the stress table, and the properties that every solved scene must have.
 
-use anyhow::Result;
 use rc_core::Field;
-use rc_solver::{Control, LevelInfo, SolveInfo};
+use rc_solver::Control;
 
 use super::audit::{Audit, load_of_one_element};
 use super::row::{Row, Rows, guarded};
 use super::solved::{Method, Solved, solve};
 
-/// Default tolerance of a scene.
+/// Tolerance of the scenes.
 pub(crate) const TOLERANCE: f64 = 1e-6;
 
-/// Amount by which an audit may exceed the tolerance, relative to the tolerance.
+/// Amount by which an audit may exceed the tolerance or the certificate, relative to the height range.
 ///
 /// It allows for the audit's rounding and for the error of the other operator.
-const AUDIT_SLACK: f64 = 0.1;
+const AUDIT_SLACK: f64 = 0.1 * TOLERANCE;
 
 /// Allowed relative error of a prescribed penetration in an audit.
 ///
 /// It allows for rounding of heights and for the error of the other operator.
 const SAME_PENETRATION: f64 = 1e-6;
 
-/// Allowed gap of elements with large pressures, as a multiple of the tolerance.
+/// Allowed gap of elements with large pressures, relative to the height range.
 ///
-/// A pressure is large from a tenth of the maximum on. The maximum of the measured values is 4.
-const OPEN_PER_TOLERANCE: f64 = 10.0;
+/// A pressure is large from a tenth of the maximum on. The maximum of the measured values is 4 tolerances.
+const OPEN: f64 = 10.0 * TOLERANCE;
 
 /// Allowed ratio of iterations to the median over all scenes of the method.
 const ITERATION_FACTOR: f64 = 2.0;
@@ -32,25 +31,22 @@ const ITERATION_FACTOR: f64 = 2.0;
 /// A contact problem with a name.
 #[derive(Clone)]
 pub(crate) struct Scene {
-    pub(crate) name: String,
-    pub(crate) heights: Field,
-    pub(crate) method: Method,
-    pub(crate) control: Control,
-    pub(crate) tolerance: f64,
-    slack: f64,
+    name: String,
+    heights: Field,
+    method: Method,
+    control: Control,
     iteration_factor: f64,
 }
 
 impl Scene {
     pub(crate) fn new(name: impl Into<String>, heights: &Field, method: Method, control: Control) -> Self {
         let name = format!("{} {}", method.name(), name.into());
-        let (slack, iteration_factor) = (AUDIT_SLACK, ITERATION_FACTOR);
-        Self { name, heights: heights.clone(), method, control, tolerance: TOLERANCE, slack, iteration_factor }
+        Self { name, heights: heights.clone(), method, control, iteration_factor: ITERATION_FACTOR }
     }
 
     /// Marks the scene as solved exactly, without an iteration.
     pub(crate) fn exact(self) -> Self {
-        Self { iteration_factor: 0.0, ..self }
+        self.slow(0.0)
     }
 
     /// Marks the scene as slow.
@@ -60,41 +56,33 @@ impl Scene {
         Self { iteration_factor: factor, ..self }
     }
 
-    pub(crate) fn solve(&self) -> Result<Solved> {
-        guarded(|| solve(&self.heights, self.method, self.control, self.tolerance))
-    }
-
-    /// Solves the scene and audits it with another operator. Returns the work.
-    fn check(&self, rows: &mut Rows) -> Option<Work> {
-        let solved = match self.solve() {
+    /// Solves the scene and audits it with another operator. Returns the iterations on the finest level.
+    fn check(&self, rows: &mut Rows) -> Option<f64> {
+        let name = &self.name;
+        let solved = guarded(|| {
+            let solved = solve(&self.heights, self.method, self.control, TOLERANCE)?;
+            let audit = Audit::of(&self.heights, &solved, self.method, self.control)?;
+            Ok((solved, audit))
+        });
+        let (solved, audit) = match solved {
             Ok(solved) => solved,
             Err(error) => {
-                rows.holds(&self.name, "solved", "converged", format!("{error:#}"), false);
+                rows.holds(name, "solved and audited", "converged", format!("{error:#}"), false);
                 return None;
             }
         };
-        let info = &solved.info;
-        rows.holds(&self.name, "solved", "converged", "converged", true);
-        let audit = match guarded(|| Audit::of(&self.heights, &solved, self.method, self.control)) {
-            Ok(audit) => audit,
-            Err(error) => {
-                rows.holds(&self.name, "audit", "possible", format!("{error:#}"), false);
-                return None;
-            }
-        };
-        rows.at_most(&self.name, "pressures not finite or negative", audit.n_bad as f64, 0.0);
-        let numbers = numbers_of(&solved);
-        let n_bad = numbers.iter().filter(|value| !value.is_finite()).count();
-        rows.at_most(&self.name, "observables not finite", n_bad as f64, 0.0);
+        rows.holds(name, "solved and audited", "converged", "converged", true);
+        rows.at_most(name, "pressures not finite or negative", audit.n_bad as f64, 0.0);
+        let n_bad = numbers_of(&solved).iter().filter(|value| !value.is_finite()).count();
+        rows.at_most(name, "observables not finite", n_bad as f64, 0.0);
         self.check_control(rows, &solved, &audit);
-        let bound = (1.0 + self.slack) * self.tolerance;
-        rows.at_most(&self.name, "penetration by audit", audit.penetration, bound);
-        rows.at_most(&self.name, "open contacts by audit", audit.open, OPEN_PER_TOLERANCE * self.tolerance);
-        let backed = info.certificate.penetration + self.slack * self.tolerance;
-        rows.at_most(&self.name, "audit within the certificate", audit.penetration, backed);
-        let claimed = info.certificate.energy + audit.energy_of(self.slack * self.tolerance);
-        rows.at_most(&self.name, "energy error within the certificate", audit.energy, claimed);
-        Some(Work::of(info))
+        let certificate = &solved.info.certificate;
+        rows.at_most(name, "penetration by audit", audit.penetration, TOLERANCE + AUDIT_SLACK);
+        rows.at_most(name, "open contacts by audit", audit.open, OPEN);
+        rows.at_most(name, "audit within the certificate", audit.penetration, certificate.penetration + AUDIT_SLACK);
+        let claimed = certificate.energy + audit.energy_of(AUDIT_SLACK);
+        rows.at_most(name, "energy error within the certificate", audit.energy, claimed);
+        Some(solved.info.fine_iterations() as f64)
     }
 
     /// Checks that the load or the penetration is the prescribed one.
@@ -111,23 +99,6 @@ impl Scene {
                 }
             }
         }
-    }
-}
-
-/// The iterations of a solve.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Work {
-    /// Iterations on the finest level.
-    finest: f64,
-    /// Iterations on all levels, weighted with the ratio of a level's elements to those of the finest level.
-    all: f64,
-}
-
-impl Work {
-    pub(crate) fn of(info: &SolveInfo) -> Self {
-        let finest = info.levels.last().map_or(1, |level| level.grid.len()) as f64;
-        let share = |level: &LevelInfo| level.iterations as f64 * level.grid.len() as f64 / finest;
-        Self { finest: info.fine_iterations() as f64, all: info.levels.iter().map(share).sum() }
     }
 }
 
@@ -153,49 +124,30 @@ fn numbers_of(solved: &Solved) -> [f64; 11] {
 /// The name and the scenes of a group.
 pub(crate) type Group = (&'static str, Vec<Scene>);
 
-/// A count of [`Work`], with its names and the factor of its bound.
-///
-/// The names in the table are for ordinary scenes, for slow scenes and for the median. The factor is above 1 for all
-/// levels, since coarser grids of a slow scene are slow too: 1.06 was measured.
-type Count = ([&'static str; 3], fn(&Work) -> f64, f64);
-
-const COUNTS: [Count; 2] = [
-    (["iterations", "iterations of slow scenes", "median iterations"], |work| work.finest, 1.0),
-    (
-        ["iterations of all levels", "iterations of all levels of slow scenes", "median iterations of all levels"],
-        |work| work.all,
-        1.1,
-    ),
-];
-
 /// Checks all scenes, and compares iterations with the median over all scenes of the method.
 pub(crate) fn check(groups: &[Group]) -> Vec<Row> {
     let mut rows = Vec::new();
-    let mut counted: Vec<(&'static str, &Scene, Work)> = Vec::new();
+    let mut counted: Vec<(&'static str, &Scene, f64)> = Vec::new();
     for (group, scenes) in groups {
         let mut of_group = Rows::of(group);
         for scene in scenes {
-            counted.extend(scene.check(&mut of_group).map(|work| (*group, scene, work)));
+            counted.extend(scene.check(&mut of_group).map(|iterations| (*group, scene, iterations)));
         }
         rows.extend(of_group.finish());
     }
-    for ([ordinary, slow, ordinary_median], count, allowance) in COUNTS {
-        let (mut medians, mut of_all) = (Vec::<(Method, f64)>::new(), Rows::of("iterations"));
-        for (group, scene, work) in &counted {
-            let known = medians.iter().find(|(method, _)| *method == scene.method).map(|(_, median)| *median);
-            let median = known.unwrap_or_else(|| {
-                let of_method = counted.iter().filter(|(_, other, _)| other.method == scene.method);
-                let median = median(of_method.map(|(_, _, work)| count(work)).collect());
-                medians.push((scene.method, median));
-                of_all.at_most(scene.method.name(), ordinary_median, median, scene.method.most_iterations());
-                median
-            });
+    for method in Method::ALL {
+        let of_method = || counted.iter().filter(move |(_, scene, _)| scene.method == method);
+        let median = median(of_method().map(|(.., iterations)| *iterations).collect());
+        let mut of_all = Rows::of("iterations");
+        of_all.at_most(method.name(), "median iterations", median, method.most_iterations());
+        rows.extend(of_all.finish());
+        for (group, scene, iterations) in of_method() {
             let mut row = Rows::of(group);
-            let property = if scene.iteration_factor > ITERATION_FACTOR { slow } else { ordinary };
-            row.at_most(&scene.name, property, count(work), allowance * scene.iteration_factor * median);
+            let property =
+                if scene.iteration_factor > ITERATION_FACTOR { "iterations of slow scenes" } else { "iterations" };
+            row.at_most(&scene.name, property, *iterations, scene.iteration_factor * median);
             rows.extend(row.finish());
         }
-        rows.extend(of_all.finish());
     }
     rows
 }

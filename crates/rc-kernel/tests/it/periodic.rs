@@ -43,6 +43,21 @@ fn coefficients_match_the_seventeen_digit_table() {
 }
 
 #[test]
+fn coefficients_match_the_hundred_digit_table() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/reference/periodic-decades.csv");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    assert_eq!(text.lines().count(), 43, "the table is complete");
+    let love = PeriodicLove::new();
+    for line in text.lines().skip(1) {
+        let row: Vec<f64> = line.split(',').map(|field| field.parse().expect("a number")).collect();
+        let (x, y, half_side, reference) = (row[0], row[1], row[2], row[3]);
+        let value = love.coefficient(DVec2::new(x, y), half_side);
+        let error = (value - reference).abs() / scale(reference, half_side);
+        assert!(error <= 1e-12, "{line}: {value:e}, off by {error:.1e}");
+    }
+}
+
+#[test]
 fn coefficients_match_the_quadrature_of_ewald_sums() {
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let love = PeriodicLove::new();
