@@ -6,7 +6,7 @@ use std::path::Path;
 use rc_core::testing::{check_kernel, quasi_random};
 use rc_core::{DVec2, Grid, Kernel};
 use rc_kernel::{Love, Spectral, love_alias_sum, love_displacement};
-use rustfft::FftPlanner;
+use rustfft::FftPlannerScalar;
 use rustfft::num_complex::Complex64;
 
 /// Rows of a CSV of numbers in `data/reference`, without the header.
@@ -92,7 +92,7 @@ fn coefficients(kernel: &dyn Kernel, n: usize) -> Vec<f64> {
     let fold = |k: usize| k.min(n - k);
     let mut values: Vec<Complex64> =
         (0..n * n).map(|i| Complex64::new(symbol(fold(i % n), fold(i / n)) / (n * n) as f64, 0.0)).collect();
-    let fft = FftPlanner::new().plan_fft_inverse(n);
+    let fft = FftPlannerScalar::new().plan_fft_inverse(n);
     for _ in 0..2 {
         fft.process(&mut values);
         values = (0..n * n).map(|i| values[(i % n) * n + i / n]).collect();

@@ -106,7 +106,7 @@ fn error_against_exact_sums(tiles: &TileSet, p: &[f64], v: &[f64]) -> f64 {
 
 #[test]
 fn one_application_agrees_with_exact_sums() {
-    for bound in [2e-3, 1e-6, 2e-9, 1e-10] {
+    for bound in [2e-3, 1e-6, 1e-10] {
         for (base, side, seed) in [(64, 128, 1), (64, 256, 2), (80, 320, 3), (64, 512, 4)] {
             let tiles = tiles_of_spots(side, SMALL, seed);
             let p = spots(&tiles, SMALL, seed);
@@ -180,7 +180,7 @@ fn elements_of_several_sizes_agree_with_exact_means() {
             for coarser in 0..elements.levels().len() {
                 let (mut difference, mut size) = (0.0, 0.0);
                 let n_cells = elements.cells(coarser).len();
-                for cell in (0..n_cells).step_by(n_cells / 40) {
+                for cell in (0..n_cells).step_by(n_cells / 20) {
                     let centres: Vec<DVec2> = finest_centres(&elements, coarser, cell).collect();
                     let coefficient = |target: DVec2, source| exact.coefficient(target - source, 0.5 / side as f64);
                     let sum: f64 =
