@@ -1,7 +1,7 @@
 //! Pages with blocks of numbers that a program writes.
 //!
 //! People write the text. A block is between `<!-- numbers: name -->` and `<!-- end of numbers -->`. Blocks of archived
-//! figures ([`crate::shown`]) may stand on every page. `cargo xtask reproduction` and every `--archive` write them, and
+//! figures (`shown.rs`) may stand on every page. `cargo xtask reproduction` and every `--archive` write them, and
 //! `cargo xtask tidy` compares them.
 
 use std::fs;
