@@ -4,4 +4,6 @@
 #[path = "../targets/heights.rs"]
 mod heights;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| heights::run(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+    heights::run(data);
+});

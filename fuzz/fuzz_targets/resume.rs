@@ -4,4 +4,6 @@
 #[path = "../targets/resume.rs"]
 mod resume;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| resume::run(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+    resume::run(data);
+});

@@ -4,4 +4,6 @@
 #[path = "../targets/scene.rs"]
 mod scene;
 
-libfuzzer_sys::fuzz_target!(|data: &[u8]| scene::run(data));
+libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+    scene::run(data);
+});

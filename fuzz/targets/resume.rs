@@ -2,9 +2,15 @@
 
 use rc_sweep::finished_rows;
 
-pub(crate) fn run(data: &[u8]) {
+pub(crate) fn run(data: &[u8]) -> bool {
     match finished_rows(data) {
-        Ok(rows) => assert!(rows <= data.len()),
-        Err(error) => assert!(!error.to_string().is_empty()),
+        Ok(rows) => {
+            assert!(rows <= data.len());
+            true
+        }
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            false
+        }
     }
 }

@@ -32,6 +32,7 @@ fn bad_values_of_the_surface_are_refused_with_their_key() {
         (&["--grid", "1000000"], "grid"),
         (&["--grid", "99999999999"], "grid"),
         (&["--grid", "1048577"], "1 to 1048576"),
+        (&["--grid", "1048576", "--method", "uniform"], "but this machine has"),
         (&["--waves", "0"], "waves"),
         (&["--rms", "-1e-6"], "rms"),
         (&["--hurst", "2"], "hurst"),

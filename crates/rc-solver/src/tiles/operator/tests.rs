@@ -106,8 +106,8 @@ fn error_against_exact_sums(tiles: &TileSet, p: &[f64], v: &[f64]) -> f64 {
 
 #[test]
 fn one_application_agrees_with_exact_sums() {
-    for bound in [2e-3, 1e-6, 1e-10] {
-        for (base, side, seed) in [(64, 128, 1), (64, 256, 2), (80, 320, 3), (64, 512, 4)] {
+    for (bound, sides) in [(2e-3, 4), (1e-6, 4), (2e-9, 2), (1e-10, 4)] {
+        for (base, side, seed) in [(64, 128, 1), (64, 256, 2), (80, 320, 3), (64, 512, 4)].into_iter().take(sides) {
             let tiles = tiles_of_spots(side, SMALL, seed);
             let p = spots(&tiles, SMALL, seed);
             let split = ScaleSplit::new(SplitParams::for_error(bound).expect("a bound in range"));
