@@ -36,7 +36,7 @@ pub struct Summary {
     ///
     /// For the uniform method it is the number of all elements.
     pub elements: usize,
-    /// Number of nested levels. It is 0 when full contact needed no iteration.
+    /// Number of nested levels. It is 1 when full contact needed no iteration.
     pub levels: usize,
     /// Mean pressure σ0 (Pa).
     pub mean_pressure: f64,

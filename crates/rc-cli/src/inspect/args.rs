@@ -30,7 +30,7 @@ pub(crate) struct InspectArgs {
     /// A result has its cell in scene.toml, and takes no --cell.
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) cell: Option<f64>,
-    /// Side of the cell along y (m) [default: that in the file, or --cell]
+    /// Side of the cell along y (m) [default: that in the file, or equal spacings]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub(crate) cell_y: Option<f64>,
     /// Unit of lengths in a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]

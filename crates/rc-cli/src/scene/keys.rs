@@ -29,7 +29,7 @@ pub struct SurfaceKeys {
     /// Side λ of the cell, along x (m) [default: the file's; random surface: 0.01]
     #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub cell: Option<f64>,
-    /// Side of the cell along y (m) [default: that in the file, or --cell]
+    /// Side of the cell along y (m) [default: that in the file, or equal spacings]
     #[arg(long, value_name = "M", help_heading = help::FILES, allow_hyphen_values = true)]
     pub cell_y: Option<f64>,
     /// Height map: text, .npy, instrument files; positive towards the half-space
