@@ -175,7 +175,7 @@ fn names(code: &[&str]) -> Vec<Named> {
                 before.pop();
             }
             if let Some(last) = found.last_mut().filter(|_| is_renamed) {
-                last.name = word.to_owned();
+                word.clone_into(&mut last.name);
             } else if !["", "as"].contains(&word) && (is_reexport || path.contains("::")) && !path.ends_with(':') {
                 let name = path.rsplit("::").next().unwrap_or_default().to_owned();
                 found.push(Named { path, name, is_reexport });
