@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 
-use crate::process::{cargo, path_of, run as run_step};
+use crate::process::{cargo, run as run_step};
 use crate::{docs, mpi, slurm, swap, test};
 
 /// Checks format, lints, documentation, dependencies and tests as continuous integration does.
@@ -28,7 +28,8 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
 /// Checks licences, sources and versions of dependencies by `deny.toml`.
 #[expect(clippy::print_stderr, reason = "a task runner says what it runs")]
 fn check_dependencies() -> Result<()> {
-    if path_of("cargo-deny").is_none() {
+    // Cargo also looks in its own folder of programs, which need not be in the search path.
+    if !cargo(&["deny", "--version"]).output().is_ok_and(|output| output.status.success()) {
         eprintln!("deny: skipped, there is no cargo-deny here (cargo install cargo-deny --locked)");
         return Ok(());
     }

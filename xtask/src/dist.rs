@@ -31,7 +31,8 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     fs::create_dir_all(&out).with_context(|| format!("could not make {}", out.display()))?;
     let version = build_binary(&args.profile, &out.join("rc"))?;
     if !args.binary {
-        wheel::build(&out, &[wheel::WHEEL, wheel::SDIST])?;
+        let is_built = wheel::build(&out, &[wheel::WHEEL, wheel::SDIST])?;
+        ensure!(is_built, "no wheel and no sdist without Python; `cargo xtask dist --binary` makes the binary alone");
         let changes = fs::read_to_string(repository::root().join("CHANGELOG.md")).context("CHANGELOG.md")?;
         let notes = section(&changes, &version).or_else(|| section(&changes, "Unreleased"));
         fs::write(out.join("NOTES.md"), notes.context("CHANGELOG.md has no section of this version")?)?;
@@ -49,7 +50,9 @@ fn build_binary(profile: &str, path: &Path) -> Result<String> {
     let mut build = cargo(&["build", "--package", "rc-cli", "--bin", "rc", "--profile", profile]);
     build.args(target.iter().flat_map(|target| ["--target", target]));
     run_step(&mut build)?;
-    let built = repository::target().join(target.as_deref().unwrap_or_default()).join(profile).join("rc");
+    // The profile dev is the only one whose folder has another name.
+    let folder = if profile == "dev" { "debug" } else { profile };
+    let built = repository::target().join(target.as_deref().unwrap_or_default()).join(folder).join("rc");
     let bytes = fs::copy(&built, path).with_context(|| format!("no binary at {}", built.display()))?;
     let output = Command::new(path).arg("--version").output().context("the binary does not start")?;
     ensure!(output.status.success(), "{} --version failed", path.display());

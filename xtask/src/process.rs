@@ -38,14 +38,23 @@ pub(crate) fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// The command as one types it in a shell.
+/// The command as one types it in a shell in the root of the repository.
 fn shell_line(command: &Command) -> String {
     let name = Path::new(command.get_program());
     let name = if name.ends_with("cargo") { Path::new("cargo") } else { name };
+    let folder = command.get_current_dir().filter(|folder| *folder != repository::root());
+    let folder = folder.map(|folder| format!("cd {} &&", quoted(folder.as_ref())));
     let environment =
-        command.get_envs().filter_map(|(name, value)| Some(format!("{}=\"{}\"", name.display(), value?.display())));
-    let words = command.get_args().map(|word| word.display().to_string());
-    environment.chain([name.display().to_string()]).chain(words).collect::<Vec<_>>().join(" ")
+        command.get_envs().filter_map(|(name, value)| Some(format!("{}={}", name.display(), quoted(value?))));
+    let words = std::iter::once(name.as_os_str()).chain(command.get_args()).map(quoted);
+    folder.into_iter().chain(environment).chain(words).collect::<Vec<_>>().join(" ")
+}
+
+/// A word for a shell, in quotes if it has spaces or what the shell would read as more than text.
+fn quoted(word: &OsStr) -> String {
+    let word = word.display().to_string();
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:,=+@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) { word } else { format!("'{}'", word.replace('\'', r"'\''")) }
 }
 
 /// Path of a program in the search path or in the system's folders.
@@ -72,6 +81,8 @@ mod tests {
     #[test]
     fn a_command_is_written_as_typed() {
         let line = shell_line(cargo(&["doc", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"));
-        assert_eq!(line, "RUSTDOCFLAGS=\"-D warnings\" cargo doc --no-deps");
+        assert_eq!(line, "RUSTDOCFLAGS='-D warnings' cargo doc --no-deps");
+        let line = shell_line(program("sh", &["-c", "echo '*'"]).current_dir("/tmp"));
+        assert_eq!(line, r"cd /tmp && sh -c 'echo '\''*'\'''");
     }
 }

@@ -23,16 +23,18 @@ const TOOLS: [&str; 1] = ["maturin[zig]==1.16.0"];
 const TEST_TOOLS: [&str; 4] = ["numpy", "pytest==9.2.0", "matplotlib", "tqdm"];
 
 pub(crate) fn run(_args: &Args) -> Result<()> {
-    build(&repository::target().join("dist"), &[WHEEL])
+    build(&repository::target().join("dist"), &[WHEEL]).map(drop)
 }
 
 /// What maturin makes for PyPI: the wheel, and the sources.
 pub(crate) const WHEEL: &[&str] = &["build", "--release", "--locked", "--zig", "--compatibility", "manylinux2014"];
 pub(crate) const SDIST: &[&str] = &["sdist"];
 
-/// Makes some of [`WHEEL`] and [`SDIST`] in `out`, and tests the wheel. Without Python, a line says so.
-pub(crate) fn build(out: &Path, kinds: &[&[&str]]) -> Result<()> {
-    let Some(python) = usable_python() else { return Ok(()) };
+/// Makes some of [`WHEEL`] and [`SDIST`] in `out`, and tests the wheel.
+///
+/// Without Python, a line says so, and the result is `false`.
+pub(crate) fn build(out: &Path, kinds: &[&[&str]]) -> Result<bool> {
+    let Some(python) = usable_python() else { return Ok(false) };
     let tools = new_environment(&python, "wheel-tools", &TOOLS)?;
     if let Ok(old) = only_wheel(out) {
         fs::remove_file(old)?;
@@ -43,7 +45,8 @@ pub(crate) fn build(out: &Path, kinds: &[&[&str]]) -> Result<()> {
     for words in kinds {
         run_step(program(&tools, &["-m", "maturin"]).args(*words).arg("--out").arg(out).env("PATH", &path))?;
     }
-    try_wheel(&python, &only_wheel(out)?)
+    try_wheel(&python, &only_wheel(out)?)?;
+    Ok(true)
 }
 
 /// Installs the wheel in a new environment and runs tests and command there.

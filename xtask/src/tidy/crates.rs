@@ -68,11 +68,14 @@ fn manifests(sources: &Sources) -> impl Iterator<Item = (&str, Table)> {
     manifests.filter_map(|(path, text)| Some((path.as_str(), text.parse().ok()?)))
 }
 
-/// Names of all dependencies of a manifest.
+/// Names of all dependencies of a manifest, on any system, without those names by which its code may call them.
 fn dependencies(manifest: &Table) -> Vec<String> {
+    let systems = manifest.get("target").and_then(Value::as_table).into_iter().flat_map(Table::values);
+    let tables = systems.filter_map(Value::as_table).chain([manifest]);
     let sections = ["dependencies", "dev-dependencies", "build-dependencies"];
-    let tables = sections.iter().filter_map(|section| manifest.get(*section).and_then(Value::as_table));
-    tables.flat_map(Table::keys).cloned().collect()
+    let in_table = |table: &Table| sections.map(|section| table.get(section).and_then(Value::as_table).cloned());
+    let name = |(name, of): (String, Value)| of.get("package").and_then(Value::as_str).unwrap_or(&name).to_owned();
+    tables.flat_map(in_table).flatten().flatten().map(name).collect()
 }
 
 #[cfg(test)]
@@ -81,8 +84,7 @@ mod tests {
 
     fn sources(name: &str, section: &str, dependency: &str) -> Sources {
         let manifest = format!("[package]\nname = \"{name}\"\n[{section}]\n{dependency}.workspace = true\n");
-        let code = "use rc_core::Field;\nuse rayon::prelude::*;\n";
-        [("a/Cargo.toml", manifest.as_str()), ("a/src/lib.rs", code)].map(|(a, b)| (a.to_owned(), b.to_owned())).into()
+        [("a/Cargo.toml".to_owned(), manifest)].into()
     }
 
     #[test]
@@ -93,9 +95,12 @@ mod tests {
         for (name, dependency) in
             [("rc-solver", "rc-fractal"), ("rc-theory", "xtask"), ("rc-bench", "rc-cli"), ("rc-new", "rayon")]
         {
-            for section in ["dependencies", "dev-dependencies", "build-dependencies"] {
+            for section in ["dependencies", "dev-dependencies", "build-dependencies", "target.'cfg(unix)'.dependencies"]
+            {
                 assert_eq!(check(&sources(name, section, dependency)).len(), 1, "{name} -> {dependency}");
             }
+            let renamed = format!("other.package = \"{dependency}\"\nother");
+            assert_eq!(check(&sources(name, "dependencies", &renamed)).len(), 1, "{name} -> {dependency}, renamed");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Files of a crate do not use each other in circles, and rooms of rc-solver only as ARCHITECTURE.md draws it.
 //!
 //! `cargo modules` would check circles too, but takes minutes to install and one run for each crate. Here, paths are read
-//! from the text: imports name the file that defines an item, so no re-export has to be followed.
+//! from the text, and re-exports (`pub use`) are followed to the file that defines an item.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -89,61 +89,82 @@ fn folder_and_module(path: &str) -> Option<(&str, String)> {
     Some((folder, if ["lib", "main"].contains(&name) { String::new() } else { name.replace('/', "::") }))
 }
 
+/// A path in code.
+struct Named {
+    path: String,
+    /// The word by which the code names it, the last of the path or that after `as`.
+    name: String,
+    is_reexport: bool,
+}
+
+/// The code of each module before its tests and without comments, and the paths in it.
+type Modules = BTreeMap<String, (String, Vec<Named>)>;
+
 /// The arrows between the modules of a crate, whose sources are in `folder`.
 fn arrows(folder: &str, sources: &Sources) -> Arrows {
     let of_folder = |path: &str| folder_and_module(path).filter(|(of, _)| *of == folder).map(|(_, module)| module);
-    let modules = sources.iter().filter_map(|(path, text)| Some((of_folder(path)?, code(text))));
-    let modules: BTreeMap<String, &str> = modules.collect();
-    let used = |(module, code): (&String, &&str)| {
-        let used = paths(code).into_iter().filter_map(|path| resolved(module, &path, &modules));
-        (module.clone(), used.filter(|other| other != module).collect())
+    // From last to first, so that the root is lib.rs where there is main.rs too.
+    let modules = sources.iter().rev().filter_map(|(path, text)| Some((of_folder(path)?, read(text))));
+    let modules: Modules = modules.collect();
+    let used = |(name, (_, names)): (&String, &(String, Vec<Named>))| {
+        let uses = names.iter().filter(|named| !named.is_reexport);
+        let used = uses.filter_map(|named| resolved(name, &named.path, &modules, HOPS));
+        (name.clone(), used.filter(|other| other != name).collect())
     };
     modules.iter().map(used).collect()
 }
 
-/// The module that defines what a path in the module `from` names.
-///
-/// `None` for names of other crates, and for those that a module only re-exports.
-fn resolved(from: &str, path: &str, modules: &BTreeMap<String, &str>) -> Option<String> {
+/// How many re-exports lead from a name to its item. Lists of all names (`*`) could lead on without end.
+const HOPS: usize = 4;
+
+/// The module that defines what a path in the module `from` names; `None` for names of other crates.
+fn resolved(from: &str, path: &str, modules: &Modules, hops: usize) -> Option<String> {
     let mut at: Vec<&str> = from.split("::").filter(|name| !name.is_empty()).collect();
-    let mut item = None;
-    for (i, word) in path.split("::").enumerate() {
-        match (i, word) {
+    let words: Vec<&str> = path.trim_start_matches('*').split("::").collect();
+    for (i, word) in words.iter().enumerate() {
+        match (i, *word) {
             (0, "crate") => at.clear(),
-            (0, "self") => {}
+            (_, "self" | "*") => {}
             (_, "super") => drop(at.pop()),
             _ if modules.contains_key(&[&at[..], &[word]].concat().join("::")) => at.push(word),
             (0, _) => return None,
-            _ => {
-                item = Some(word);
-                break;
-            }
+            _ => return defining(&at.join("::"), &words[i..], modules, hops),
         }
     }
-    let module = at.join("::");
-    let code = modules.get(&module)?;
-    item.is_none_or(|item| defines(code, item)).then_some(module)
+    Some(at.join("::"))
 }
 
-/// The code of a file before its tests.
-fn code(text: &str) -> &str {
-    text.split("mod tests {").next().unwrap_or_default()
+/// The module that defines the first of `words`, a name in `module` or one that it re-exports.
+fn defining(module: &str, words: &[&str], modules: &Modules, hops: usize) -> Option<String> {
+    let (code, names) = modules.get(module)?;
+    if defines(code, words[0]) {
+        return Some(module.to_owned());
+    }
+    let hops = hops.checked_sub(1)?;
+    names.iter().filter(|named| named.is_reexport).find_map(|Named { path, name, .. }| match &**name {
+        "*" => resolved(module, &path.replace('*', &words.join("::")), modules, hops),
+        name if name == words[0] => resolved(module, &[&[&**path], &words[1..]].concat().join("::"), modules, hops),
+        _ => None,
+    })
 }
 
-/// The paths `a::b` in code, outside of what it re-exports.
-fn paths(code: &str) -> Vec<String> {
-    let is_in_path = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
-    let (mut found, mut is_reexport) = (Vec::new(), false);
+fn read(text: &str) -> (String, Vec<Named>) {
+    let code = text.split("mod tests {").next().unwrap_or_default();
+    let code: Vec<&str> = code.lines().map(|line| line.split("//").next().unwrap_or_default()).collect();
+    (code.join("\n"), names(&code))
+}
+
+/// The paths `a::b` in lines of code.
+fn names(code: &[&str]) -> Vec<Named> {
+    let is_in_path = |c: char| c.is_alphanumeric() || "_:*".contains(c);
+    let (mut found, mut is_reexport, mut is_renamed): (Vec<Named>, _, _) = (Vec::new(), false, false);
     // What each open brace puts before the names in it: the path of a list, or nothing.
     let mut before = vec![String::new()];
-    for line in code.lines().map(|line| line.split("//").next().unwrap_or_default()) {
+    for line in code {
         // A visibility uses no module.
-        let line = line.split_once("pub(in ").and_then(|(_, rest)| rest.split_once(')')).map_or(line, |(_, rest)| rest);
+        let line =
+            line.split_once("pub(in ").and_then(|(_, rest)| rest.split_once(')')).map_or(*line, |(_, rest)| rest);
         is_reexport |= line.trim_start().starts_with("pub") && line.contains(" use ");
-        if is_reexport {
-            is_reexport = !line.contains(';');
-            continue;
-        }
         for piece in line.split_inclusive(|c| !is_in_path(c)) {
             let word = piece.trim_end_matches(|c| !is_in_path(c));
             let path = before.last().map_or("", String::as_str).to_owned() + word;
@@ -153,8 +174,15 @@ fn paths(code: &str) -> Vec<String> {
             if piece.ends_with('}') && before.len() > 1 {
                 before.pop();
             }
-            found.extend(Some(path).filter(|path| !word.is_empty() && path.contains("::") && !path.ends_with(':')));
+            if let Some(last) = found.last_mut().filter(|_| is_renamed) {
+                word.clone_into(&mut last.name);
+            } else if !["", "as"].contains(&word) && (is_reexport || path.contains("::")) && !path.ends_with(':') {
+                let name = path.rsplit("::").next().unwrap_or_default().to_owned();
+                found.push(Named { path, name, is_reexport });
+            }
+            is_renamed = word == "as" && is_reexport;
         }
+        is_reexport &= !line.contains(';');
     }
     found
 }
@@ -193,10 +221,26 @@ mod tests {
             "pub(crate) use crate::a::T;",
             "pub(in crate::a) fn f() {}",
             "#[cfg(test)]\nmod tests {\n    use crate::a::T;\n}",
-            "use crate::S;",
             "use a::T;",
         ] {
             assert_eq!(found("use crate::b::S;", b), Vec::<String>::new(), "{b}");
+        }
+    }
+
+    #[test]
+    fn circles_through_reexports_are_found() {
+        for (root, b) in [
+            ("pub use a::T;", "use crate::T;"),
+            ("pub use a::T as V;", "fn f(v: crate::V) {}"),
+            ("pub(crate) use self::a::{U, T};", "fn f() { *super::T; }"),
+            ("pub use c::{\n    U,\n    *,\n};", "use crate::T;"),
+            ("pub use a as d;", "use crate::d::*;"),
+        ] {
+            let a = "use crate::b::S;\npub static T: U = 1;";
+            let c = "pub use crate::a::*;\npub use super::*;";
+            let b = format!("struct S;\n{b}");
+            let found = check_circles(&sources(&[("lib.rs", root), ("a.rs", a), ("b.rs", &b), ("c.rs", c)]));
+            assert!(found.len() == 1 && found[0].contains(": a, b use"), "{root} {b}: {found:?}");
         }
     }
 

@@ -54,7 +54,7 @@ fn check_row(row: &str, sources: &Sources) -> Vec<String> {
 
 /// Whether `text` defines `item`.
 pub(super) fn defines(text: &str, item: &str) -> bool {
-    const KEYWORDS: &[&str] = &["fn", "struct", "enum", "trait", "const", "type", "mod"];
+    const KEYWORDS: &[&str] = &["fn", "struct", "enum", "trait", "const", "static", "type", "mod", "macro_rules!"];
     text.match_indices(item).any(|(at, _)| {
         let is_whole = !text[at + item.len()..].starts_with(|c: char| c.is_alphanumeric() || c == '_');
         is_whole && KEYWORDS.iter().any(|keyword| text[..at].ends_with(&format!("{keyword} ")))
