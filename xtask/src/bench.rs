@@ -31,18 +31,18 @@ pub(crate) struct Args {
     #[arg(long, value_name = "PATH", requires = "peers", default_value_os_t = peers(), hide_default_value = true)]
     python: PathBuf,
     /// Number of solves of each case. The result is their median.
-    #[arg(long, default_value_t = 5)]
+    #[arg(long, default_value_t = 5, conflicts_with = "quick")]
     repeats: usize,
     /// Longest expected solve of a peer; longer ones are left out.
     ///
     /// Peers that use one thread have half of it.
-    #[arg(long, value_name = "SECONDS", default_value_t = 12.0, requires = "peers")]
+    #[arg(long, value_name = "SECONDS", default_value_t = 12.0, requires = "peers", conflicts_with = "quick")]
     peer_seconds: f64,
     /// Folder for the table and the picture.
     #[arg(long, value_name = "DIR", default_value_os_t = repository::root().join("figures"), hide_default_value = true)]
     out: PathBuf,
-    /// Archives this run in `data/bench/`, `docs/images/` and the tables of the documents.
-    #[arg(long, conflicts_with_all = ["quick", "scenes"])]
+    /// Archives this run in `data/bench/`, `docs/images/` and the tables of the documents. Needs all peers.
+    #[arg(long, conflicts_with_all = ["quick", "scenes", "tables", "check", "accept", "make_reference"])]
     archive: bool,
     /// Instead of errors: time, memory and iterations on grids up to 32768² (6 GB).
     ///

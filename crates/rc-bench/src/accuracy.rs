@@ -1,4 +1,5 @@
-//! `cargo xtask accuracy`: how often the error bars of area, rms pressure and mean gap hold.
+//! `cargo xtask accuracy`: how often the error bars of area, rms pressure and mean gap hold, and how much more accurate
+//! the area is than the count of elements.
 //!
 //! No constant was fitted to these scenes. Their limits are from elements at least four times smaller, and for the area
 //! from the other kernel.
@@ -53,6 +54,8 @@ struct Bars {
     stratum: Stratum,
     errors: [f64; 3],
     widths: [f64; 3],
+    /// Relative error of the area by counting elements.
+    counted: f64,
 }
 
 impl Bars {
@@ -139,6 +142,7 @@ impl Stratum {
             stratum: *self,
             errors: std::array::from_fn(|i| values[i] / limits[i] - 1.0),
             widths: std::array::from_fn(|i| bars[i].map_or(f64::NAN, |bar| bar / limits[i])),
+            counted: found.area.cells / limits[0] - 1.0,
         })
     }
 }
@@ -179,6 +183,8 @@ fn table(all: &[Bars]) -> Table {
         "mean_gap_covered_percent",
         "area_median_error_percent",
         "area_median_bar_percent",
+        "area_rms_error_percent",
+        "area_counted_rms_error_percent",
     ];
     let of_stratum = |scenes: &[Bars]| {
         let stratum = scenes.first()?.stratum;
@@ -194,13 +200,22 @@ fn table(all: &[Bars]) -> Table {
     Table::new("coverage", &header, strata.chain([last]))
 }
 
-/// Number of scenes, percentages of scenes whose bars hold, and median error and bar of the area.
+/// Number of scenes, percentages of scenes whose bars hold, and errors of the area: median error and bar, and
+/// [`rms_errors`].
 fn statistics(scenes: &[Bars]) -> Vec<String> {
     let held = |i: usize| scenes.iter().filter(|bars| bars.holds(i)).count() as f64 / scenes.len() as f64;
     let of_area = |value: fn(&Bars) -> f64| median(scenes.iter().map(value).collect());
     let medians = [of_area(|bars| bars.errors[0].abs()), of_area(|bars| bars.widths[0])];
-    let values = (0..QUANTITIES.len()).map(held).chain(medians);
+    let values = (0..QUANTITIES.len()).map(held).chain(medians).chain(rms_errors(scenes));
     [scenes.len().to_string()].into_iter().chain(values.map(|value| number(100.0 * value))).collect()
+}
+
+/// Rms relative errors of the area and of the area by counting.
+fn rms_errors(scenes: &[Bars]) -> [f64; 2] {
+    let rms = |error: fn(&Bars) -> f64| {
+        (scenes.iter().map(|bars| error(bars).powi(2)).sum::<f64>() / scenes.len() as f64).sqrt()
+    };
+    [rms(|bars| bars.errors[0]), rms(|bars| bars.counted)]
 }
 
 #[cfg(test)]
@@ -219,7 +234,30 @@ mod tests {
             let expected = 0.95 * covered.len() as f64;
             assert!((held - expected).abs() < four_errors, "{name}: {held} of {} bars hold", covered.len());
         }
+        // Bars that are too wide hold as well.
+        for (quantity, name) in QUANTITIES.into_iter().enumerate() {
+            let of =
+                |value: fn(&Bars, usize) -> f64| median(covered.iter().map(|bars| value(bars, quantity)).collect());
+            let ratio = of(|bars, i| bars.widths[i]) / of(|bars, i| bars.errors[i].abs());
+            assert!(ratio < 6.0, "{name}: the median bar is {ratio} times the median error");
+        }
         let n_strata = bars.len() / 4;
         assert_eq!(table(&bars).csv.lines().count(), n_strata + 2);
+    }
+
+    #[test]
+    fn located_areas_have_less_than_a_fifth_of_the_counting_error() {
+        // Four scenes are too few for an rms error. Here are 20, four of each Hurst exponent.
+        let is_meant = |stratum: &Stratum| {
+            let Stratum { kind, method, elements_per_wave, ratio, .. } = *stratum;
+            (kind, method, elements_per_wave, ratio) == (Kind::SelfAffine, Method::Uniform, 8, 1)
+        };
+        let strata: Vec<_> = strata().into_iter().filter(is_meant).collect();
+        assert_eq!(strata.len(), 2, "one for each kernel");
+        for stratum in strata {
+            let bars: Result<Vec<_>> = (0..20).into_par_iter().map(|i| stratum.bars(i)).collect();
+            let [located, counted] = rms_errors(&bars.expect("solvable scenes"));
+            assert!(located < 0.2 * counted, "{}: {located} located, {counted} counted", stratum.kernel);
+        }
     }
 }

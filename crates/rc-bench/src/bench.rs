@@ -20,6 +20,7 @@ mod setting;
 mod tables;
 mod times;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -34,7 +35,7 @@ pub use documents::check as check_documents;
 pub use make_reference::run as make_reference;
 pub use scenes::Scene;
 
-use peers::{ASPHER, PEERS};
+use peers::{ASPHER, PEERS, PeerKind};
 use picture::TimeAgainstError;
 use record::Row;
 use reference::References;
@@ -80,13 +81,15 @@ pub fn scenes<T: AsRef<str>>(names: &[T]) -> Result<Vec<Scene>> {
 /// Measures, prints and saves, scene by scene.
 ///
 /// # Errors
-/// When a solve of ours fails, after the others are saved, or a file cannot be written.
+/// When a peer of a run to archive does not start, a solve of ours fails, after the others are saved, or a file cannot
+/// be written.
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub fn measure(params: &Params) -> Result<()> {
     let (references, start) = (References::read()?, Instant::now());
     let python = params.peers.as_ref().map(|peers| peers.python.as_path());
     let peer_seconds = params.peers.as_ref().map_or(0.0, |peers| peers.seconds);
     let limits = Limits { repeats: params.repeats.max(1), peer_seconds };
+    let versions = versions(&Peers::start(python, &PEERS), &PEERS, params.archive)?;
     let (mut rows, mut n_failed) = (Vec::<Row>::new(), 0);
     for &scene in &params.scenes {
         // A new process of each peer for each scene, as each of our solves has a new one.
@@ -94,7 +97,7 @@ pub fn measure(params: &Params) -> Result<()> {
         let mut cases = rounds::cases(scene, python.is_some());
         n_failed += rounds::run(&mut cases, limits, &mut peers);
         rows.extend(cases.iter().filter_map(Row::of));
-        let machine = machine::description(&peers.versions(), start.elapsed().as_secs_f64())?;
+        let machine = machine::description(&versions, start.elapsed().as_secs_f64())?;
         save(&params.out, ["bench.csv", "bench.toml"], [record::to_csv(&rows)?, toml::to_string(&machine)?])?;
     }
     let results = Results { rows: &rows, references: &references };
@@ -109,12 +112,15 @@ pub fn measure(params: &Params) -> Result<()> {
 /// Times are by number of threads and by contact area. `quick` selects small scenes.
 ///
 /// # Errors
-/// When a solve fails, after the others are saved, or a file cannot be written.
+/// When the peer of a run to archive does not start, a solve fails, after the others are saved, or a file cannot be
+/// written.
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub fn measure_scale(params: &Params, quick: bool) -> Result<()> {
     let start = Instant::now();
     let python = params.peers.as_ref().map(|peers| peers.python.as_path());
     let mut peers = Peers::start(python, &[ASPHER]);
+    // A peer that fails later is still one of the programs of the run.
+    let versions = versions(&peers, &[ASPHER], params.archive)?;
     let limits = Limits { repeats: params.repeats.max(1), peer_seconds: f64::INFINITY };
     let (mut rows, mut n_failed) = (Vec::<ScaleRow>::new(), 0);
     for (part, mut cases) in [(Part::Grids, scale::grids(quick)), (Part::Contact, scale::loads(quick))] {
@@ -122,7 +128,7 @@ pub fn measure_scale(params: &Params, quick: bool) -> Result<()> {
         rows.extend(cases.iter().filter_map(|case| ScaleRow::of(part, case)));
     }
     println!("{}\n{}", tables::grids(&rows), tables::contact(&rows));
-    let machine = machine::description(&peers.versions(), start.elapsed().as_secs_f64())?;
+    let machine = machine::description(&versions, start.elapsed().as_secs_f64())?;
     save(&params.out, ["scale.csv", "scale.toml"], [record::to_csv(&rows)?, toml::to_string(&machine)?])?;
     ensure!(n_failed == 0, "{n_failed} solves failed, see above; the others are in {}", params.out.display());
     if params.archive {
@@ -130,6 +136,17 @@ pub fn measure_scale(params: &Params, quick: bool) -> Result<()> {
         documents::update()?;
     }
     Ok(())
+}
+
+/// Name and version of each peer that started.
+///
+/// # Errors
+/// When one of `kinds` did not start, and the run is to be archived.
+fn versions(peers: &Peers, kinds: &[PeerKind], archive: bool) -> Result<BTreeMap<String, String>> {
+    let versions = peers.versions();
+    let missing: Vec<&str> = kinds.iter().map(|kind| kind.name).filter(|&name| !versions.contains_key(name)).collect();
+    ensure!(!archive || missing.is_empty(), "--archive needs --peers and a Python that has {}", missing.join(", "));
+    Ok(versions)
 }
 
 /// Writes text files into the folder `out`.
@@ -165,4 +182,17 @@ pub fn update_documents() -> Result<()> {
 
 fn draw(path: &Path, results: Results<'_>) -> Result<()> {
     save_png(&TimeAgainstError(results), path).with_context(|| format!("could not draw {}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_without_all_peers_is_not_archived() {
+        let none = Peers::start(None, &PEERS);
+        let error = versions(&none, &PEERS, true).expect_err("no peer started").to_string();
+        assert!(error.contains("aspher, tamaas, contactmechanics"), "{error}");
+        assert!(versions(&none, &PEERS, false).is_ok_and(|versions| versions.is_empty()));
+    }
 }

@@ -29,9 +29,14 @@ const GROUPS: [(&str, MakeRows); 3] =
 /// With `only`, it takes groups whose name contains it.
 ///
 /// # Errors
-/// When a row fails, or a file cannot be written.
+/// When no group is called so, a row fails, or a file cannot be written.
 #[expect(clippy::print_stdout, reason = "the result of the command")]
 pub fn run(preset: Preset, only: Option<&str>, folder: &Path) -> Result<()> {
+    let names = GROUPS.map(|(name, _)| name);
+    if let Some(only) = only {
+        let is_known = names.iter().any(|name| name.contains(only));
+        ensure!(is_known, "no group is called '{only}'; there are {}", names.join(", "));
+    }
     let started = Instant::now();
     // A panic becomes a row of the table, so its message is not printed.
     std::panic::set_hook(Box::new(|_| {}));
@@ -99,6 +104,12 @@ mod tests {
         check(&rows).expect("every row passes");
         assert!(rows.len() >= 1500, "only {} rows", rows.len());
         assert_eq!(table(&rows).csv.lines().count(), rows.len() + 1);
+    }
+
+    #[test]
+    fn an_unknown_group_is_refused() {
+        let error = run(Preset::Quick, Some("mesh-free"), Path::new("nowhere")).expect_err("no such group").to_string();
+        assert!(error.contains("'mesh-free'") && error.contains("extremes, meshes, invariances"), "{error}");
     }
 
     #[test]

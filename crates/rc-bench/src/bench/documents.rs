@@ -75,9 +75,14 @@ mod tests {
     use rc_figures::repository;
 
     use super::*;
+    use crate::bench::peers::{ASPHER, PEERS};
+    use crate::bench::readings::Reading;
     use crate::bench::record::tests::rows;
-    use crate::bench::record::to_csv;
+    use crate::bench::record::{OURS, to_csv};
+    use crate::bench::reference::Quantity;
     use crate::bench::scale::tests::rows as scale_rows;
+    use crate::bench::setting::MESHES;
+    use crate::bench::times::LEVELS;
 
     /// Every block in each document, and the archived files.
     fn sources() -> Sources {
@@ -110,5 +115,50 @@ mod tests {
         sources.insert("README.md".to_owned(), readme);
         sources.remove(BENCH);
         assert!(check(&sources)[0].contains("--archive"));
+    }
+
+    /// The statements of "Where rc is not ahead" in docs/benchmarks.md, and the numbers of docs/paper/paper.md.
+    #[test]
+    fn the_archived_run_bears_the_statements_of_the_documents() {
+        let sources = repository::read_sources(&repository::root()).expect("the repository");
+        let references = References::from_text(&sources[REFERENCE]).expect("the references");
+        let rows: Vec<Row> = from_csv(&sources[BENCH], BENCH).expect("the archived run");
+        let results = Results { rows: &rows, references: &references };
+        // Of the fastest peer.
+        let ratio = |asked| {
+            let ratios = PEERS.into_iter().filter_map(|kind| results.peer(kind.name, asked).1);
+            ratios.map(|ratio| ratio.value).reduce(f64::min).unwrap_or(f64::NAN)
+        };
+        // What rc does not state, or states later.
+        let finest = (Quantity::RmsPressure, 1e-4);
+        assert_eq!((results.ours(finest).n, results.peer(ASPHER.name, finest).0.n), (0, 9));
+        let (loose, gap) = ((Quantity::Area, 3e-3), (Quantity::MeanGap, 1e-4));
+        let later: Vec<_> = LEVELS.into_iter().filter(|&asked| ratio(asked) < 1.0).collect();
+        assert_eq!(later, [loose, gap]);
+        let aspher = results.peer(ASPHER.name, loose).0;
+        assert_eq!((aspher.reading, aspher.n - aspher.n_true), (Reading::Published, 8));
+        // Equal meshes.
+        let ahead = |method, kernel| {
+            let meshes = ["paper", "heavy"].into_iter().flat_map(|scene| MESHES.map(|mesh| (scene, mesh)));
+            let is_ahead = |&(scene, mesh): &(&str, usize)| {
+                let of = |program, method, kernel| results.on_mesh(scene, (program, method, kernel, 0, "1e-6"), mesh);
+                let ours_and_theirs = of(OURS, method, kernel).zip(of(ASPHER.name, "uniform", "spectral"));
+                ours_and_theirs.is_some_and(|(ours, theirs)| theirs < ours)
+            };
+            meshes.filter(is_ahead).collect::<Vec<_>>()
+        };
+        assert_eq!(ahead("adaptive", "love"), [("paper", 8), ("heavy", 8), ("heavy", 16)]);
+        assert_eq!(ahead("uniform", "spectral"), [("heavy", 4)]);
+        // The paper.
+        let paper = sources["docs/paper/paper.md"].split_whitespace().collect::<Vec<_>>().join(" ");
+        let area = (Quantity::Area, 1e-3);
+        let [gap, pressure] = [Quantity::MeanGap, Quantity::RmsPressure].map(|quantity| ratio((quantity, 1e-3)));
+        for sentence in [
+            format!("over ten problems is {:.0} ms", 1e3 * results.ours(area).seconds),
+            format!("needs {:.0} times as long", ratio(area)),
+            format!("these ratios are {gap:.1} and {pressure:.1}"),
+        ] {
+            assert!(paper.contains(&sentence), "docs/paper/paper.md does not say '{sentence}'");
+        }
     }
 }

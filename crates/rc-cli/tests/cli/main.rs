@@ -23,5 +23,6 @@ mod sweep_mean;
 mod sweep_refused;
 mod sweep_shards;
 mod tools;
+mod units;
 mod warnings;
 mod watched;
