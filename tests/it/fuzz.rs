@@ -81,13 +81,10 @@ fn fuzz(target: fn(&[u8]) -> bool, files: &[Vec<u8>], inputs: u64) {
     let mut accepted = 0;
     for seed in 0..inputs {
         let bytes = Random(seed).changed(files);
-        match std::panic::catch_unwind(|| target(&bytes)) {
-            Ok(is_accepted) => accepted += u64::from(is_accepted),
-            Err(_) => {
-                let start = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]);
-                panic!("input {seed} of {inputs}: {start}");
-            }
-        }
+        let Ok(is_accepted) = std::panic::catch_unwind(|| target(&bytes)) else {
+            panic!("input {seed} of {inputs}: {}", String::from_utf8_lossy(&bytes[..bytes.len().min(200)]));
+        };
+        accepted += u64::from(is_accepted);
     }
     assert!(accepted > inputs / 100, "only {accepted} of {inputs} are accepted");
 }
