@@ -2,8 +2,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rc_core::testing::{check_height_field, check_kernel};
-use rc_core::{Field, Grid, HeightField, Kernel, Operator, Silent, Symbol};
+use rc_core::testing::{ChangedOperator, check_height_field, check_kernel};
+use rc_core::{Field, Grid, HeightField, Kernel, Silent, Symbol};
 use rc_kernel::Love;
 use rc_solver::{
     ContactProblem, Control, Method, OperatorFault, ProblemError, SolveError, SolveParams, Status, UniformOperator,
@@ -92,24 +92,6 @@ fn a_half_space_that_answers_nan_later_is_an_error_and_no_contact() {
     }
 }
 
-/// An operator whose displacements a function changes.
-struct Changed<F>(UniformOperator, F);
-
-impl<F: Fn(&mut [f64]) + Sync> Operator for Changed<F> {
-    fn n_elements(&self) -> usize {
-        self.0.n_elements()
-    }
-
-    fn scratch_len(&self) -> usize {
-        self.0.scratch_len()
-    }
-
-    fn apply(&self, pressure: &[f64], displacement: &mut [f64], scratch: &mut [f64]) {
-        self.0.apply(pressure, displacement, scratch);
-        (self.1)(displacement);
-    }
-}
-
 /// Multiplies all values by `factor`.
 fn scale(values: &mut [f64], factor: f64) {
     for value in values {
@@ -124,7 +106,7 @@ fn scale(values: &mut [f64], factor: f64) {
 fn an_own_operator_drives_the_solver() {
     let heights = heights(64);
     // This half-space is twice as compliant.
-    let soft = Changed(UniformOperator::new(heights.grid(), &Love), |v: &mut [f64]| scale(v, 2.0));
+    let soft = ChangedOperator(UniformOperator::new(heights.grid(), &Love), |v: &mut [f64]| scale(v, 2.0));
     rc_core::testing::check_operator(&soft);
     let params = SolveParams::to_tolerance(1e-8);
     let own = solve_with_operator(&heights, &soft, Control::MeanPressure(5e-4), &params, &Silent).expect("solvable");
@@ -156,7 +138,7 @@ fn an_operator_of_no_half_space_is_refused_before_the_solve() {
                 *value -= mean;
             }
         };
-        let operator = Changed(UniformOperator::new(heights.grid(), &Love), lopsided);
+        let operator = ChangedOperator(UniformOperator::new(heights.grid(), &Love), lopsided);
         let load = Control::MeanPressure(1e-3);
         solve_with_operator(&heights, &operator, load, &SolveParams::default(), &Silent).err()
     };

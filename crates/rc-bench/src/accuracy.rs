@@ -56,6 +56,8 @@ struct Bars {
     widths: [f64; 3],
     /// Relative error of the area by counting elements.
     counted: f64,
+    /// Relative error of the rms pressure of the elements, without the correction at edges.
+    of_elements: f64,
 }
 
 impl Bars {
@@ -143,6 +145,7 @@ impl Stratum {
             errors: std::array::from_fn(|i| values[i] / limits[i] - 1.0),
             widths: std::array::from_fn(|i| bars[i].map_or(f64::NAN, |bar| bar / limits[i])),
             counted: found.area.cells / limits[0] - 1.0,
+            of_elements: found.rms_pressure / limits[1] - 1.0,
         })
     }
 }
@@ -185,6 +188,8 @@ fn table(all: &[Bars]) -> Table {
         "area_median_bar_percent",
         "area_rms_error_percent",
         "area_counted_rms_error_percent",
+        "rms_pressure_median_error_percent",
+        "rms_pressure_of_elements_median_error_percent",
     ];
     let of_stratum = |scenes: &[Bars]| {
         let stratum = scenes.first()?.stratum;
@@ -200,13 +205,15 @@ fn table(all: &[Bars]) -> Table {
     Table::new("coverage", &header, strata.chain([last]))
 }
 
-/// Number of scenes, percentages of scenes whose bars hold, and errors of the area: median error and bar, and
-/// [`rms_errors`].
+/// Number of scenes, percentages of scenes whose bars hold, and errors.
+///
+/// The errors are those of the area, median error and bar and [`rms_errors`], and the median ones of the rms pressure.
 fn statistics(scenes: &[Bars]) -> Vec<String> {
     let held = |i: usize| scenes.iter().filter(|bars| bars.holds(i)).count() as f64 / scenes.len() as f64;
-    let of_area = |value: fn(&Bars) -> f64| median(scenes.iter().map(value).collect());
-    let medians = [of_area(|bars| bars.errors[0].abs()), of_area(|bars| bars.widths[0])];
-    let values = (0..QUANTITIES.len()).map(held).chain(medians).chain(rms_errors(scenes));
+    let middle = |value: fn(&Bars) -> f64| median(scenes.iter().map(value).collect());
+    let of_area = [middle(|bars| bars.errors[0].abs()), middle(|bars| bars.widths[0])];
+    let of_pressure = [middle(|bars| bars.errors[1].abs()), middle(|bars| bars.of_elements.abs())];
+    let values = (0..QUANTITIES.len()).map(held).chain(of_area).chain(rms_errors(scenes)).chain(of_pressure);
     [scenes.len().to_string()].into_iter().chain(values.map(|value| number(100.0 * value))).collect()
 }
 

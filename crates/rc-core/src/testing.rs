@@ -117,3 +117,22 @@ pub fn check_operator(operator: &dyn Operator) {
     let worst = apply(&vec![1.0; n], 0.0).iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     assert!(worst <= 1e-12, "a uniform pressure moves the surface by {worst}");
 }
+
+/// An operator whose displacements a function changes, for tests of what must notice it.
+#[derive(Debug)]
+pub struct ChangedOperator<O, F>(pub O, pub F);
+
+impl<O: Operator, F: Fn(&mut [f64]) + Sync> Operator for ChangedOperator<O, F> {
+    fn n_elements(&self) -> usize {
+        self.0.n_elements()
+    }
+
+    fn scratch_len(&self) -> usize {
+        self.0.scratch_len()
+    }
+
+    fn apply(&self, pressure: &[f64], displacement: &mut [f64], scratch: &mut [f64]) {
+        self.0.apply(pressure, displacement, scratch);
+        (self.1)(displacement);
+    }
+}

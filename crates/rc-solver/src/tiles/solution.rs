@@ -225,36 +225,21 @@ impl Solved for TileSolution<'_> {
     }
 
     fn into_owned(self: Box<Self>) -> Box<dyn Solved> {
-        let Self {
-            data,
-            h_max,
-            converged,
-            grid,
-            finest,
-            mesh,
-            pressure,
-            area,
-            hardness,
-            plastic,
-            info,
-            evaluated,
-            proven,
-        } = *self;
-        let data = Arc::new(TileData::into_owned(data));
+        let solution = *self;
         Box::new(TileSolution {
-            data,
-            h_max,
-            converged,
-            grid,
-            finest,
-            mesh,
-            pressure,
-            area,
-            hardness,
-            plastic,
-            info,
-            evaluated,
-            proven,
+            data: Arc::new(TileData::into_owned(solution.data)),
+            h_max: solution.h_max,
+            converged: solution.converged,
+            grid: solution.grid,
+            finest: solution.finest,
+            mesh: solution.mesh,
+            pressure: solution.pressure,
+            area: solution.area,
+            hardness: solution.hardness,
+            plastic: solution.plastic,
+            info: solution.info,
+            evaluated: solution.evaluated,
+            proven: solution.proven,
         })
     }
 }

@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use rc_core::testing::{check_operator, quasi_random};
+use rc_core::testing::{ChangedOperator, check_operator, quasi_random};
 use rc_core::{Grid, Kernel, Operator};
 use rc_kernel::{Love, Spectral};
 
@@ -39,24 +39,6 @@ fn fft_operator_matches_direct_sum_on_non_square_grids() {
 /// A change of displacements.
 type Fault = fn(&mut [f64]);
 
-/// An operator whose displacements a function changes.
-struct Faulty(UniformOperator, Fault);
-
-impl Operator for Faulty {
-    fn n_elements(&self) -> usize {
-        self.0.n_elements()
-    }
-
-    fn scratch_len(&self) -> usize {
-        self.0.scratch_len()
-    }
-
-    fn apply(&self, pressure: &[f64], displacement: &mut [f64], scratch: &mut [f64]) {
-        self.0.apply(pressure, displacement, scratch);
-        (self.1)(displacement);
-    }
-}
-
 /// The check that forks run on their operators finds faults.
 #[test]
 fn the_contract_finds_faults() {
@@ -69,7 +51,7 @@ fn the_contract_finds_faults() {
         ("not linear", |v| v.iter_mut().for_each(|v| *v += *v * v.abs())),
     ];
     for (name, fault) in faults {
-        let operator = Faulty(UniformOperator::new(Grid::square(16).expect("grid"), &Love), fault);
+        let operator = ChangedOperator(UniformOperator::new(Grid::square(16).expect("grid"), &Love), fault);
         assert!(catch_unwind(AssertUnwindSafe(|| check_operator(&operator))).is_err(), "{name} was not found");
     }
 }
