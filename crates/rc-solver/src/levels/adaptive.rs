@@ -83,7 +83,7 @@ impl<'a> TileLevels<'a> {
     ///
     /// If a start was kept, it goes on from that.
     pub(crate) fn begin(&self, observer: &dyn Observer) -> Begun<TileStart> {
-        if let Some(checkpoint) = &self.place.checkpoint
+        if let Some(checkpoint) = &self.checkpoint
             && let Some((start, history)) = kept(&**checkpoint, (self.finest(), self.boundary()), self.ranks())
             && self.ladder().grid(self.n_levels(start.grid)) == start.grid
         {
@@ -254,7 +254,7 @@ impl Levels for TileLevels<'_> {
     }
 
     fn keep(&self, begun: &Begun<TileStart>) {
-        if let Some(checkpoint) = &self.place.checkpoint {
+        if let Some(checkpoint) = &self.checkpoint {
             keep(&**checkpoint, &begun.start, &begun.history);
         }
     }

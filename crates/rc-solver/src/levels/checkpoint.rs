@@ -8,7 +8,7 @@ use rc_quadtree::{CELLS, Elements, TILE, TileSet};
 
 use crate::descent::info::{LevelInfo, LevelValues};
 use crate::levels::nested::History;
-use crate::problem::place::Checkpoint;
+use crate::problem::checkpoint::Checkpoint;
 use crate::tiles::mesh::Mesh;
 use crate::tiles::prolongation::MeshStart;
 

@@ -14,13 +14,13 @@ use crate::levels::params::AdaptiveParams;
 use crate::levels::split::check_split;
 use crate::parallel;
 use crate::problem::adaptive_error::AdaptiveError;
-use crate::problem::bounds::Bounds;
 use crate::problem::capabilities::{Feature, refusal};
 use crate::problem::checked::Problem;
+use crate::problem::checkpoint::Checkpoint;
+use crate::problem::contact_problem::ContactProblem;
 use crate::problem::control::Control;
 use crate::problem::kernel::OwnedKernel;
 use crate::problem::method::Method;
-use crate::problem::place::Place;
 use crate::problem::support::Support;
 use crate::tiles::base::Base;
 use crate::tiles::data::TileData;
@@ -46,7 +46,8 @@ pub(crate) struct TileLevels<'a> {
     pub(crate) data: Arc<TileData<'a>>,
     pub(crate) problem: Problem,
     pub(crate) params: AdaptiveParams,
-    pub(crate) place: Place,
+    ranks: Ranks,
+    pub(super) checkpoint: Option<Arc<dyn Checkpoint>>,
     pub(super) kernel: OwnedKernel<'a>,
     /// Split for fresh gaps in descents.
     fresh: GapSplit,
@@ -81,29 +82,35 @@ pub(crate) fn prepare<'a>(
 }
 
 impl<'a> TileLevels<'a> {
-    /// The problem of one load, solved in this place.
+    /// The problem of one load.
     ///
-    /// `data` was prepared with the same `kernel` and `params`.
+    /// `data` was prepared with its kernel and the same `params`.
     ///
     /// # Errors
     /// [`AdaptiveError`].
     pub(crate) fn new(
         data: &Arc<TileData<'a>>,
-        kernel: OwnedKernel<'a>,
-        bounds: Bounds,
+        asked: &ContactProblem<'a>,
         params: &AdaptiveParams,
-        place: &Place,
     ) -> Result<Self, AdaptiveError> {
         let split = first_split(params)?;
         let support = Support { boundary: data.boundary(), compliance: 0.0 };
-        let problem = Problem::of_statistics(data.heights.extremes(), bounds, &params.solve, support)?;
+        let problem = Problem::of_statistics(data.heights.extremes(), asked.bounds(), &params.solve, support)?;
         if problem.h_range == 0.0
             && let Some(refusal) = refusal(&[Feature::Flat], Some(Method::Adaptive))
         {
             return Err(refusal.into());
         }
-        let (data, place) = (Arc::clone(data), place.clone());
-        let levels = Self { data, problem, params: *params, place, kernel, fresh: split, certified: split };
+        let levels = Self {
+            data: Arc::clone(data),
+            problem,
+            params: *params,
+            ranks: asked.ranks.clone(),
+            checkpoint: asked.checkpoint.clone(),
+            kernel: asked.kernel.clone(),
+            fresh: split,
+            certified: split,
+        };
         let Estimate { area_fraction, adaptive_bytes, .. } = levels.estimate();
         // Ranks share all bytes except those of the base grid.
         let base_bytes = base_bytes(levels.base().period()) + levels.data.sampled_bytes;
@@ -143,7 +150,7 @@ impl<'a> TileLevels<'a> {
     }
 
     pub(crate) fn ranks(&self) -> &Ranks {
-        &self.place.ranks
+        &self.ranks
     }
 
     /// The base grid.

@@ -7,10 +7,9 @@ use rc_core::{Boundary, HeightSource, Kernel};
 use rc_kernel::Love;
 
 use crate::problem::bounds::Bounds;
+use crate::problem::checkpoint::Checkpoint;
 use crate::problem::control::Control;
 use crate::problem::kernel::OwnedKernel;
-use crate::problem::place::Checkpoint;
-use crate::problem::place::Place;
 use crate::problem::support::Support;
 
 /// A contact problem: heights, half-space and load.
@@ -35,7 +34,10 @@ pub struct ContactProblem<'a> {
     pub(crate) kernel: OwnedKernel<'a>,
     pub(crate) control: Control,
     pub(crate) hardness: f64,
-    pub(crate) place: Place,
+    /// Ranks that share the problem.
+    pub(crate) ranks: Ranks,
+    /// Storage for the start of each level, if a solve is to be continued.
+    pub(crate) checkpoint: Option<Arc<dyn Checkpoint>>,
 }
 
 impl<'a> ContactProblem<'a> {
@@ -44,8 +46,8 @@ impl<'a> ContactProblem<'a> {
     /// The kernel is [`Love`].
     #[must_use]
     pub fn new(heights: impl Into<HeightSource<'a>>, control: Control) -> Self {
-        let (kernel, place) = (OwnedKernel::Borrowed(&Love), Place::default());
-        Self { heights: heights.into(), kernel, control, hardness: f64::INFINITY, place }
+        let (kernel, ranks) = (OwnedKernel::Borrowed(&Love), Ranks::alone());
+        Self { heights: heights.into(), kernel, control, hardness: f64::INFINITY, ranks, checkpoint: None }
     }
 
     /// The same problem with a maximum pressure, the hardness (in E*).
@@ -75,6 +77,11 @@ impl<'a> ContactProblem<'a> {
     /// What is beyond the heights.
     pub(crate) fn boundary(&self) -> Boundary {
         Support::of(self.kernel.get(), self.heights.grid()).boundary
+    }
+
+    /// Whether several ranks share the problem.
+    pub(crate) fn is_shared(&self) -> bool {
+        self.ranks.size() > 1
     }
 
     pub(crate) fn bounds(&self) -> Bounds {
@@ -121,7 +128,7 @@ impl<'a> ContactProblem<'a> {
     /// ```
     #[must_use]
     pub fn over(self, ranks: Ranks) -> Self {
-        Self { place: Place { ranks, ..self.place }, ..self }
+        Self { ranks, ..self }
     }
 
     /// The same problem with a checkpoint.
@@ -133,7 +140,7 @@ impl<'a> ContactProblem<'a> {
     /// methods, and the adaptive method with a border level, store nothing.
     #[must_use]
     pub fn kept_in(self, checkpoint: Arc<dyn Checkpoint>) -> Self {
-        Self { place: Place { checkpoint: Some(checkpoint), ..self.place }, ..self }
+        Self { checkpoint: Some(checkpoint), ..self }
     }
 }
 
@@ -144,7 +151,7 @@ impl std::fmt::Debug for ContactProblem<'_> {
             .field("kernel", &self.kernel.get().name())
             .field("control", &self.control)
             .field("hardness", &self.hardness)
-            .field("ranks", &self.place.ranks)
+            .field("ranks", &self.ranks)
             .finish()
     }
 }

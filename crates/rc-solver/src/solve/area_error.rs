@@ -66,7 +66,7 @@ fn waves_of(problem: &ContactProblem<'_>) -> Result<usize, SolveError> {
         Some(Feature::AreaError),
         waves.is_none().then_some(Feature::HeightMap),
         (!heights.grid().has_square_cell()).then_some(Feature::OblongGrid),
-        problem.place.checkpoint.as_ref().map(|_| Feature::Checkpoint),
+        problem.checkpoint.as_ref().map(|_| Feature::Checkpoint),
     ];
     let features: Vec<_> = features.into_iter().flatten().collect();
     if let Some(refused) = refusal(&features, None) {

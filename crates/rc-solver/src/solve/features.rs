@@ -14,9 +14,9 @@ use crate::tiles::ladder::{Ladder, has_squares};
 
 /// The features of a problem that are known before its heights are evaluated.
 pub(super) fn features(problem: &ContactProblem<'_>, params: &SolveParams) -> Vec<Feature> {
-    let (heights, kernel, place) = (&problem.heights, problem.kernel.get(), &problem.place);
+    let (heights, kernel) = (&problem.heights, problem.kernel.get());
     let is_layer = kernel.uniform_displacement().is_some();
-    let (has_border, has_ranks) = (params.border_level > 0, place.is_shared());
+    let (has_border, has_ranks) = (params.border_level > 0, problem.is_shared());
     let all = [
         (Feature::Layer, is_layer),
         (Feature::OwnKernel, !is_layer && kernel.split().is_none()),
@@ -30,7 +30,7 @@ pub(super) fn features(problem: &ContactProblem<'_>, params: &SolveParams) -> Ve
         (Feature::UnevenGrid, (has_border || has_ranks) && is_uneven(problem, params)),
         (Feature::BorderLevel, has_border),
         (Feature::Ranks, has_ranks),
-        (Feature::Checkpoint, place.checkpoint.is_some()),
+        (Feature::Checkpoint, problem.checkpoint.is_some()),
     ];
     all.into_iter().filter_map(|(feature, is_there)| is_there.then_some(feature)).collect()
 }
@@ -64,7 +64,7 @@ pub(super) fn refusal_of(
 /// Ranks do not change the method, because results must not depend on their number.
 pub(super) fn check_ranks(problem: &ContactProblem<'_>, reason: &MethodReason) -> Result<(), SolveError> {
     match refusal(&[Feature::Ranks], Some(Method::Uniform)) {
-        Some(refused) if problem.place.is_shared() => Err(refused.noted(reason).into()),
+        Some(refused) if problem.is_shared() => Err(refused.noted(reason).into()),
         _ => Ok(()),
     }
 }

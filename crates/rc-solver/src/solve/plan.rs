@@ -156,7 +156,7 @@ fn by_adaptive<'a>(
     };
     let uniform_fits = fits_beside(0.0);
     // If the method may not follow memory, a load is solved in the same way on every machine, or refused.
-    let is_only = || params.method_follows_memory && problem.place.ranks.any(uniform_fits.is_err());
+    let is_only = || params.method_follows_memory && problem.ranks.any(uniform_fits.is_err());
     let may_leave = matches!(reason, MethodReason::SmallContact { .. }) && !is_only();
     let (bound, tolerance) = (levels.params.solve.bound, levels.params.solve.bound.value());
     let reason = match levels.solve(may_leave, observer) {
@@ -165,7 +165,7 @@ fn by_adaptive<'a>(
         }
         Err(Unsuitable::Rough) => MethodReason::ToleranceTooSmall { tolerance },
         Ok(solution) => {
-            let is_last = !may_leave || problem.place.is_shared() || uniform_fits.is_err();
+            let is_last = !may_leave || problem.is_shared() || uniform_fits.is_err();
             if is_last || solution.status() != Status::NotConverged || observer.should_stop() {
                 return Ok(Tried::Solved(solution));
             }

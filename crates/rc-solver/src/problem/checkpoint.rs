@@ -1,8 +1,4 @@
-//! Where a problem is solved: the ranks that share it, and the storage from which it goes on.
-
-use std::sync::Arc;
-
-use rc_comm::Ranks;
+//! The storage from which a solve goes on.
 
 /// Storage that outlives the process, usually a file.
 ///
@@ -17,20 +13,4 @@ pub trait Checkpoint: Send + Sync {
     ///
     /// The checkpoint must report a failure itself. The solve continues.
     fn replace(&self, pieces: &mut dyn Iterator<Item = Vec<u8>>);
-}
-
-/// The place where a problem is solved.
-#[derive(Clone, Default)]
-pub(crate) struct Place {
-    /// Ranks that the mesh is dealt among.
-    pub(crate) ranks: Ranks,
-    /// Storage for the start of each level, if a solve is to be continued.
-    pub(crate) checkpoint: Option<Arc<dyn Checkpoint>>,
-}
-
-impl Place {
-    /// Whether several ranks share the problem.
-    pub(crate) fn is_shared(&self) -> bool {
-        self.ranks.size() > 1
-    }
 }
