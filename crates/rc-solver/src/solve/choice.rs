@@ -112,7 +112,7 @@ impl<'a> Choice<'a, '_> {
         let (params, kernel) = (self.params.adaptive(self.bound), self.problem.kernel.get());
         let split = kernel.split().expect("the table refuses kernels without a split");
         let data = self.shared.tiles(&self.problem.heights, kernel, split, &params)?;
-        TileLevels::new(data, &self.problem, &params)
+        TileLevels::new(data, self.problem, &params)
     }
 
     /// Chooses the uniform grid after the adaptive method has failed with `error`.
