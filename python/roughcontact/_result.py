@@ -63,8 +63,13 @@ class Result:
     levels: int
     #: Mean pressure σ0 (Pa).
     mean_pressure: float
+    #: Estimated error of ``mean_pressure`` (Pa). ``None`` under a given load.
+    mean_pressure_error_bar: float | None
     #: Penetration Δ (m).
     penetration: float
+    #: Estimated error of ``penetration`` at this load (m). It contains the height of the surface's maximum above the
+    #: highest sample.
+    penetration_error_bar: float
     #: Penetration of full contact (m).
     penetration_full_contact: float
     #: Contact area, best estimate.
@@ -86,7 +91,7 @@ class Result:
     max_pressure: float
     #: Mean gap (m).
     mean_gap: float
-    #: Estimated error of ``mean_gap`` (m). In a periodic cell under a given load, ``penetration`` has the same error.
+    #: Estimated error of ``mean_gap`` (m).
     mean_gap_error: float
     #: dσ0/dΔ (Pa/m); None in full contact.
     contact_stiffness: float | None

@@ -18,6 +18,7 @@ mod hertz;
 mod interchange;
 mod layer;
 mod leakage;
+mod penetration;
 mod pits;
 mod ranks;
 mod reference;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rc_core::quantity::{count, digits, engineering};
+use rc_core::quantity::{Scale, count, digits, engineering};
 use rc_sweep::{ControlKind, LeakageSummary, Summary};
 
 /// A few aligned lines about a solved problem.
@@ -22,12 +22,12 @@ pub(crate) fn stiffness(s: &Summary) -> String {
 pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'static str, String)> {
     let [nx, ny] = s.grid;
     let pascals = |value| engineering(value, "Pa");
-    let metres = |value| engineering(value, "m");
     let method = s.method_reason.as_ref().unwrap_or(&s.method).clone();
     let cell = format!("{} with {nx} x {ny} elements, E* = {}", cell(sides), pascals(e_star));
     let area = percent(s.area_fraction, s.area_fraction_error);
     let counted = digits(100.0 * s.area_fraction_cells, 4);
-    let mean_pressure = format!("{} ({} E*)", pascals(s.mean_pressure), digits(s.mean_pressure / e_star, 4));
+    let mean_pressure = measured(s.mean_pressure, s.mean_pressure_error_bar, "Pa");
+    let mean_pressure = format!("{mean_pressure} ({} E*)", digits(s.mean_pressure / e_star, 4));
     let penetration = penetration(s);
     let mut lines = vec![
         ("method", method),
@@ -37,7 +37,7 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
         ("mean pressure", mean_pressure),
         ("rms, max pressure", format!("{}, {}", pascals(s.rms_pressure), pascals(s.max_pressure))),
         ("penetration", penetration),
-        ("mean gap", metres(s.mean_gap)),
+        ("mean gap", measured(s.mean_gap, s.mean_gap_error, "m")),
         ("stiffness", stiffness(s)),
         ("elastic energy", engineering(s.elastic_energy, "J")),
         ("certificate", certificate_line(s)),
@@ -102,7 +102,9 @@ fn leakage_lines(leakage: &LeakageSummary) -> [(&'static str, String); 2] {
 }
 
 fn penetration(s: &Summary) -> String {
-    let [penetration, full] = [s.penetration, s.penetration_full_contact].map(|length| engineering(length, "m"));
+    // A given penetration has no error; the load has it.
+    let bar = s.penetration_error_bar.filter(|_| s.control != ControlKind::Penetration.key());
+    let penetration = measured(s.penetration, bar, "m");
     // A layer and a patch with free borders are also displaced as a whole. Full contact then does not have a certain
     // depth.
     let open = s.mean_gap - s.mean_plastic_gap.unwrap_or(0.0);
@@ -110,7 +112,7 @@ fn penetration(s: &Summary) -> String {
     if displacement > ROUNDING * s.penetration_full_contact.max(s.penetration) {
         format!("{penetration}, mean displacement {}", engineering(displacement, "m"))
     } else {
-        format!("{penetration} of {full} at full contact")
+        format!("{penetration} of {} at full contact", engineering(s.penetration_full_contact, "m"))
     }
 }
 
@@ -146,6 +148,18 @@ pub(crate) fn with_error(value: f64, error: f64) -> String {
         format!("{value:.decimals$} ± {error:.decimals$}")
     } else {
         digits(value, 6)
+    }
+}
+
+/// A quantity with its error bar, for instance `15.14 µm ± 40 nm`. Errors of rounding are left out.
+fn measured(value: f64, error: Option<f64>, unit: &'static str) -> String {
+    let text = engineering(value, unit);
+    match error.filter(|&error| error > 1e-12 * value.abs() && error.is_finite()) {
+        Some(error) => {
+            let scale = Scale::of(error, unit);
+            format!("{text} ± {} {}", digits(error / scale.factor, 2), scale.unit())
+        }
+        None => text,
     }
 }
 

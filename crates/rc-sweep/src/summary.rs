@@ -40,8 +40,14 @@ pub struct Summary {
     pub levels: usize,
     /// Mean pressure σ0 (Pa).
     pub mean_pressure: f64,
+    /// Estimated discretisation error of `mean_pressure` (Pa). It is null under a given load.
+    pub mean_pressure_error_bar: Option<f64>,
     /// Penetration Δ (m).
     pub penetration: f64,
+    /// Estimated discretisation error of `penetration` at this load (m).
+    ///
+    /// It contains the height of the surface's maximum above the highest sample.
+    pub penetration_error_bar: Option<f64>,
     /// Penetration of full contact, max(h) - mean(h) (m).
     pub penetration_full_contact: f64,
     /// Best estimate of the contact area A/A0. Edges of contacts are located between the centres of elements.
@@ -82,7 +88,7 @@ pub struct Summary {
     pub max_pressure: f64,
     /// Mean gap (m).
     pub mean_gap: f64,
-    /// Estimated discretisation error of `mean_gap` and of `penetration` (m).
+    /// Estimated discretisation error of `mean_gap` (m).
     pub mean_gap_error: Option<f64>,
     /// Contact stiffness dσ0/dΔ (Pa/m). It is null in full contact, where it is infinite.
     pub contact_stiffness: Option<f64>,
@@ -190,7 +196,9 @@ impl Summary {
             elements: solution.n_elements(),
             levels: info.levels.len(),
             mean_pressure: units.pascals(info.mean_pressure),
+            mean_pressure_error_bar: solution.mean_pressure_error().map(|error| units.pascals(error)),
             penetration: units.metres(info.penetration),
+            penetration_error_bar: Some(units.metres(solution.penetration_error())),
             penetration_full_contact: units.metres(info.penetration_full_contact),
             area_fraction: observables.area.fraction,
             area_fraction_cells: observables.area.cells,

@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::support::{MATERIAL, Place, assert_refused, assert_solved, bumps, f8, map, npy, small, text};
 
 /// Keys of `summary.json`, in their order.
-pub(crate) const KEYS: [&str; 44] = [
+pub(crate) const KEYS: [&str; 46] = [
     "status",
     "control",
     "kernel",
@@ -18,7 +18,9 @@ pub(crate) const KEYS: [&str; 44] = [
     "elements",
     "levels",
     "mean_pressure",
+    "mean_pressure_error_bar",
     "penetration",
+    "penetration_error_bar",
     "penetration_full_contact",
     "area_fraction",
     "area_fraction_cells",

@@ -3,9 +3,10 @@
 use crate::support::{Place, assert_solved};
 
 /// Quantities of a summary, with the powers of E* and of the cell side in their units.
-const QUANTITIES: [(&str, i32, i32); 19] = [
+const QUANTITIES: [(&str, i32, i32); 20] = [
     ("mean_pressure", 1, 0),
     ("penetration", 0, 1),
+    ("penetration_error_bar", 0, 1),
     ("penetration_full_contact", 0, 1),
     ("area_fraction", 0, 0),
     ("area_fraction_cells", 0, 0),

@@ -26,7 +26,7 @@ impl Solution<'_> {
     #[must_use]
     pub fn gap(&self) -> &Field {
         match self.solved.stored() {
-            Some([_, gap]) if self.how.hardness.is_infinite() => gap,
+            Some([_, gap]) if self.hardness().is_infinite() => gap,
             _ => self.gap.get_or_init(|| self.collect(self.grid(), |take| self.gap_rows(take))),
         }
     }
@@ -92,7 +92,7 @@ impl Solution<'_> {
     /// The error that `take` returns.
     pub fn gap_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
         match (self.solved.stored(), self.gap.get()) {
-            (Some([_, gap]), _) if self.how.hardness.is_infinite() => self.rows_of(gap, take),
+            (Some([_, gap]), _) if self.hardness().is_infinite() => self.rows_of(gap, take),
             (_, Some(gap)) => self.rows_of(gap, take),
             _ => self.part_rows(GapPart::Open, Rows::on_grid(Receiver::First), take),
         }

@@ -31,7 +31,7 @@ pub struct Observables {
     ///
     /// With a hardness, the overlap that plastic flow has removed is added.
     pub mean_gap: f64,
-    /// Estimated discretisation error of `mean_gap` and of the penetration.
+    /// Estimated discretisation error of `mean_gap`.
     pub mean_gap_error: f64,
     /// Elastic energy per nominal area, ½ mean(p v).
     pub elastic_energy: f64,

@@ -8,8 +8,11 @@ use rc_core::{Field, Grid};
 use crate::descent::certificate::Certificate;
 use crate::descent::contact_element::ContactElement;
 use crate::descent::info::{SolveInfo, Status};
+use crate::problem::bounds::Bounds;
+use crate::problem::control::Control;
 use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
+use crate::problem::summit::Summit;
 use crate::problem::tolerance::ErrorBound;
 use crate::solution::contact_area::area::ContactArea;
 use crate::solution::elements;
@@ -28,7 +31,7 @@ use crate::solution::solved::Solved;
 /// rank. [`Solution::elements`] returns the elements of the calling rank only.
 pub struct Solution<'a> {
     pub(crate) how: HowSolved,
-    pub(crate) h_max: f64,
+    summit: Summit,
     pub(crate) solved: Box<dyn Solved + 'a>,
     pub(crate) pressure: OnceLock<Field>,
     pub(crate) gap: OnceLock<Field>,
@@ -45,26 +48,16 @@ pub(crate) struct HowSolved {
     pub(crate) reason: MethodReason,
     pub(crate) bound: ErrorBound,
     pub(crate) kernel: &'static str,
-    /// The limit of the pressure. Infinite for an elastic contact.
-    pub(crate) hardness: f64,
-}
-
-impl HowSolved {
-    pub(crate) fn new(method: Method, reason: MethodReason, bound: ErrorBound, kernel: &'static str) -> Self {
-        Self { method, reason, bound, kernel, hardness: f64::INFINITY }
-    }
-
-    pub(crate) fn with_hardness(self, hardness: f64) -> Self {
-        Self { hardness, ..self }
-    }
+    /// The load. The hardness, which limits the pressure, is infinite for an elastic contact.
+    pub(crate) asked: Bounds,
 }
 
 impl<'a> Solution<'a> {
     /// The solution of a solved level.
-    pub(crate) fn new(how: HowSolved, h_max: f64, solved: Box<dyn Solved + 'a>) -> Self {
+    pub(crate) fn new(how: HowSolved, summit: Summit, solved: Box<dyn Solved + 'a>) -> Self {
         Self {
             how,
-            h_max,
+            summit,
             solved,
             pressure: OnceLock::new(),
             gap: OnceLock::new(),
@@ -81,9 +74,9 @@ impl<'a> Solution<'a> {
     /// ([`rc_core::Kernel::to_shared`]). If there is none, displacement and stiffness are computed now.
     #[must_use]
     pub fn into_owned(self) -> Solution<'static> {
-        let Self { how, h_max, solved, pressure, gap, plastic_gap, displacement, observables, stiffness } = self;
+        let Self { how, summit, solved, pressure, gap, plastic_gap, displacement, observables, stiffness } = self;
         let solved = solved.into_owned();
-        Solution { how, h_max, solved, pressure, gap, plastic_gap, displacement, observables, stiffness }
+        Solution { how, summit, solved, pressure, gap, plastic_gap, displacement, observables, stiffness }
     }
 
     /// How the solve ended.
@@ -146,7 +139,38 @@ impl<'a> Solution<'a> {
     /// Maximum height on the grid of the smallest elements, in λ.
     #[must_use]
     pub fn h_max(&self) -> f64 {
-        self.h_max
+        self.summit.sampled
+    }
+
+    /// Estimated height of the true maximum above [`Solution::h_max`], in λ, ≥ 0. It lies between samples.
+    ///
+    /// Surfaces are evaluated there. For a map, parabolas are fitted to its heights.
+    #[must_use]
+    pub fn summit_excess(&self) -> f64 {
+        self.summit.excess
+    }
+
+    /// Estimated discretisation error of the penetration at this load, in λ.
+    ///
+    /// It is the sum of [`Solution::summit_excess`], by which a penetration from the highest sample is too small, and of
+    /// [`Observables::mean_gap_error`]. Under a given penetration, the load has the error that this penetration causes
+    /// ([`Solution::mean_pressure_error`]).
+    #[must_use]
+    pub fn penetration_error(&self) -> f64 {
+        self.summit.excess + self.observables().mean_gap_error
+    }
+
+    /// Estimated discretisation error of the mean pressure, in E*. `None` under a given load.
+    ///
+    /// It is [`Solution::stiffness`] times [`Solution::penetration_error`], and `None` where the stiffness is infinite.
+    #[must_use]
+    pub fn mean_pressure_error(&self) -> Option<f64> {
+        match self.how.asked.control {
+            Control::MeanPressure(_) => None,
+            Control::Penetration(_) => {
+                Some(self.stiffness() * self.penetration_error()).filter(|error| error.is_finite())
+            }
+        }
     }
 
     /// The contact area with its error bar.
@@ -186,7 +210,7 @@ impl<'a> Solution<'a> {
     /// The hardness, which limits the pressure, in E*. Infinite for an elastic contact.
     #[must_use]
     pub fn hardness(&self) -> f64 {
-        self.how.hardness
+        self.how.asked.hardness
     }
 
     /// The ranks that solved the problem. All of them call the functions of this solution together.

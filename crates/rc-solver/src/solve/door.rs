@@ -2,17 +2,19 @@
 
 use std::sync::Arc;
 
-use rc_core::{Grid, HeightSource, Observer, Operator, Silent};
+use rc_core::{Boundary, Grid, HeightSource, Observer, Operator, Silent};
 
 use crate::descent::info::Status;
 use crate::grid::solve_with_operator::solve_on_grid;
 use crate::grid::solved::{GridSolved, Response};
+use crate::problem::bounds::Bounds;
 use crate::problem::capabilities::{Feature, refusal};
 use crate::problem::checked::check_tolerance;
 use crate::problem::contact_problem::ContactProblem;
 use crate::problem::control::Control;
 use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
+use crate::problem::summit::Summit;
 use crate::solution::whole::HowSolved;
 use crate::solution::whole::Solution;
 use crate::solve::area_error;
@@ -168,8 +170,10 @@ pub fn solve_with_operator<'a>(
     };
     let limits = params.iteration(bound);
     let solution = solve_on_grid(&heights, operator, control, &limits, observer)?;
-    let how = HowSolved::new(Method::Uniform, reason, bound, "operator");
+    let asked = Bounds::from(control);
+    let how = HowSolved { method: Method::Uniform, reason, bound, kernel: "operator", asked };
+    let summit = Summit::on_grid(source.surface(), (&heights, heights.max()), Boundary::Periodic);
     let solved = GridSolved { solution, response: Response::Operator(operator), hardness: f64::INFINITY };
-    let solution = Solution::new(how, heights.max(), Box::new(solved));
+    let solution = Solution::new(how, summit, Box::new(solved));
     if solution.status() == Status::NotConverged { Err(plan::not_converged(solution)) } else { Ok(solution) }
 }

@@ -17,6 +17,7 @@ use crate::paper::solve::solve_gauss_seidel;
 use crate::problem::contact_problem::ContactProblem;
 use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
+use crate::problem::summit::Summit;
 use crate::problem::tolerance::ErrorBound;
 use crate::solution::solved::Solved;
 use crate::solution::whole::{HowSolved, Solution};
@@ -84,12 +85,14 @@ impl<'a> Plan<'a> {
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
         let Self { problem, params, bound, chosen, reason, mut shared } = self;
         let name = problem.kernel.get().name();
-        let how = |method, reason| HowSolved::new(method, reason, bound, name).with_hardness(problem.hardness);
+        let asked = problem.bounds();
+        let how = |method, reason| HowSolved { method, reason, bound, kernel: name, asked };
         let (before, chosen, reason) = match chosen {
             ChosenMethod::Adaptive(levels) => {
                 let tried = by_adaptive(&problem, &params, (&levels, &reason), observer)?;
                 let how = how(Method::Adaptive, reason);
-                let found = |solution: TileSolution<'a>| Solution::new(how, solution.h_max, Box::new(solution));
+                let summit = levels.data.heights.summit();
+                let found = |solution: TileSolution<'a>| Solution::new(how, summit, Box::new(solution));
                 match tried {
                     Tried::Solved(solution) => {
                         // An error carries a solution without a borrow, which need not be a copy then.
@@ -114,9 +117,9 @@ impl<'a> Plan<'a> {
             (Method::Uniform, solve_uniform(heights, kernel, problem.bounds(), &limits, observer)?)
         };
         let how = how(method, reason);
-        let h_max = heights.max();
+        let summit = Summit::on_grid(problem.heights.surface(), (heights, heights.max()), problem.boundary());
         let solved = GridSolved { solution, response: Response::Kernel(problem.kernel), hardness: problem.hardness };
-        let solution = Solution::new(how, h_max, Box::new(solved));
+        let solution = Solution::new(how, summit, Box::new(solved));
         // NaN counts as infinite.
         let error = |solution: &Solution<'_>| solution.certificate().error(bound).min(f64::INFINITY);
         match before {

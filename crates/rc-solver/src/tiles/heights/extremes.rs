@@ -1,6 +1,10 @@
 //! The maximum height, without evaluating all heights.
 
+use rc_core::DVec2;
+
+use crate::problem::summit::{MAX_CLIMBS, climb};
 use crate::tiles::heights::bounds::Bounds;
+use crate::tiles::heights::interpolation::Interpolation;
 use rc_quadtree::TILE;
 
 /// The maximum value at the centres of `tiles_per_side`² tiles.
@@ -31,4 +35,22 @@ pub(super) fn greatest(bounds: &Bounds, tiles_per_side: usize, tile: impl Fn(usi
 /// Maximum of the heights of a tile.
 pub(super) fn of_tile(heights: &[f64; TILE * TILE]) -> f64 {
     heights.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The maximum of a surface between the centres of elements, at least `sampled`.
+///
+/// It is searched in the highest leaves of `bounds` above `sampled`.
+pub(super) fn summit(surface: &Interpolation, bounds: &Bounds, sampled: f64) -> f64 {
+    let side = surface.side();
+    let mut leaves: Vec<(usize, f64)> = bounds.leaves().enumerate().filter(|(_, bound)| *bound > sampled).collect();
+    leaves.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut best = sampled;
+    for (leaf, bound) in leaves.into_iter().take(MAX_CLIMBS) {
+        if bound <= best {
+            break;
+        }
+        let centre = DVec2::new((leaf % side) as f64 + 0.5, (leaf / side) as f64 + 0.5) / side as f64;
+        best = best.max(climb(&|at| surface.height(at), centre, DVec2::splat(1.0 / side as f64)));
+    }
+    best
 }

@@ -3,11 +3,11 @@
 //! They are interpolated from one grid that resolves the surface.
 
 use rayon::prelude::*;
-use rc_core::Field;
+use rc_core::{DVec2, Field};
 use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
 
 use crate::tiles::heights::stencil::{MAX_WIDTH, Stencil, Stencils};
-use crate::tiles::heights::window::{Derivative, ERRORS, HIGHEST_FREQUENCY, TAPS, transform};
+use crate::tiles::heights::window::{Derivative, ERRORS, HIGHEST_FREQUENCY, TAPS, transform, window};
 use rc_quadtree::TILE;
 
 /// Number of coefficients before the first and after the last of a row.
@@ -100,6 +100,21 @@ impl Interpolation {
             13..=16 => self.apply::<16>(x, y, out),
             _ => self.apply::<MAX_WIDTH>(x, y, out),
         }
+    }
+
+    /// Height at any place of the periodic cell of side 1.
+    pub(super) fn height(&self, at: DVec2) -> f64 {
+        let taps = |along: f64| {
+            let place = along.rem_euclid(1.0) * self.side as f64 - 0.5;
+            let left = place.floor();
+            let weight = |tap| window(place - left + (TAPS / 2 - 1) as f64 - tap as f64, Derivative::None);
+            // The halo before the first coefficient is half of the taps.
+            ((left + 1.0) as usize, std::array::from_fn::<f64, TAPS, _>(weight))
+        };
+        let ((column, along_x), (row, along_y)) = (taps(at.x), taps(at.y));
+        let rows = self.coefficients[row * stride(self.side)..].chunks(stride(self.side));
+        let of_row = |row: &[f64]| row[column..].iter().zip(along_x).map(|(c, weight)| c * weight).sum::<f64>();
+        self.mean + rows.zip(along_y).map(|(row, weight)| weight * of_row(row)).sum::<f64>()
     }
 
     fn apply<const WIDTH: usize>(&self, x: Place<'_>, y: Place<'_>, out: &mut [f64; TILE * TILE]) {

@@ -10,6 +10,7 @@ use rc_quadtree::{TILE, put_tile};
 use crate::grid::coarser::{Pits, coarsen};
 use crate::problem::checked::HeightStatistics;
 use crate::problem::error::ProblemError;
+use crate::problem::summit::Summit;
 use crate::tiles::heights::bounds::Bounds;
 use crate::tiles::heights::extremes;
 use crate::tiles::heights::interpolation::{Interpolation, smallest_side};
@@ -32,6 +33,7 @@ pub(crate) struct Heights<'a> {
     interpolation: Option<Interpolation>,
     bounds: Bounds,
     extremes: HeightStatistics,
+    summit: Summit,
 }
 
 impl<'a> Heights<'a> {
@@ -48,8 +50,8 @@ impl<'a> Heights<'a> {
     ) -> Result<Self, ProblemError> {
         let ladder = (Ladder::new(base, source.grid()), boundary);
         match source {
-            HeightSource::Map(map) => Self::of_map(WholeGrid::Borrowed(map), ladder),
-            HeightSource::SharedMap(map) => Self::of_map(WholeGrid::Shared(map), ladder),
+            HeightSource::Map(map) => Self::of_map(WholeGrid::Borrowed(map), None, ladder),
+            HeightSource::SharedMap(map) => Self::of_map(WholeGrid::Shared(map), None, ladder),
             HeightSource::Surface { surface, grid } => Self::of_waves(surface, grid, ladder),
             HeightSource::SharedSurface { surface, grid } => Self::of_waves(surface.as_ref(), grid, ladder),
         }
@@ -80,19 +82,25 @@ impl<'a> Heights<'a> {
     ) -> Result<Self, ProblemError> {
         match is_interpolated(surface, grid, ladder) {
             Some((limit, level)) => Self::of_surface(surface, limit, level, ladder),
-            None => Self::of_map(WholeGrid::new(surface.sample(grid)), (ladder, boundary)),
+            None => Self::of_map(WholeGrid::new(surface.sample(grid)), Some(surface), (ladder, boundary)),
         }
     }
 
-    fn of_map(map: WholeGrid<'a>, (ladder, boundary): (Ladder, Boundary)) -> Result<Self, ProblemError> {
+    /// Levels of a map, or of a `surface` whose samples it is.
+    fn of_map(
+        map: WholeGrid<'a>,
+        surface: Option<&dyn HeightField>,
+        (ladder, boundary): (Ladder, Boundary),
+    ) -> Result<Self, ProblemError> {
         let extremes = HeightStatistics::of(&map)?;
+        let summit = Summit::on_grid(surface, (&map, extremes.greatest), boundary);
         let bounds = Bounds::of_map(&map, &extremes);
         let coarser = (0..ladder.n_levels()).rev().map(|level| ladder.grid(level));
         let mut grids: Vec<WholeGrid<'a>> =
             coarsen(&map, boundary, Pits::Filled, coarser).into_iter().map(WholeGrid::new).collect();
         grids.reverse();
         grids.push(map);
-        Ok(Self { ladder, grids, interpolation: None, bounds, extremes })
+        Ok(Self { ladder, grids, interpolation: None, bounds, extremes, summit })
     }
 
     fn of_surface(
@@ -125,14 +133,16 @@ impl<'a> Heights<'a> {
             // Samples of whole waves, each more than two elements long, have the mean zero.
             mean: of_samples.mean,
         };
-        Ok(Self { ladder, grids, interpolation: Some(interpolation), bounds, extremes })
+        let sampled = extremes.greatest;
+        let summit = Summit { sampled, excess: extremes::summit(&interpolation, &bounds, sampled) - sampled };
+        Ok(Self { ladder, grids, interpolation: Some(interpolation), bounds, extremes, summit })
     }
 
     /// The same heights without a borrow. A borrowed map is copied.
     pub(crate) fn into_owned(self) -> Heights<'static> {
-        let Self { ladder, grids, interpolation, bounds, extremes } = self;
-        let grids = grids.into_iter().map(WholeGrid::into_owned).collect();
-        Heights { ladder, grids, interpolation, bounds, extremes }
+        let grids = self.grids.into_iter().map(WholeGrid::into_owned).collect();
+        let Self { ladder, interpolation, bounds, extremes, summit, .. } = self;
+        Heights { ladder, grids, interpolation, bounds, extremes, summit }
     }
 
     /// The grids of the levels.
@@ -223,6 +233,11 @@ impl<'a> Heights<'a> {
     /// Maximum and minimum height at the centres of the finest level, and the mean height.
     pub(crate) fn extremes(&self) -> HeightStatistics {
         self.extremes
+    }
+
+    /// The maximum height at the centres of the finest level, and between them.
+    pub(crate) fn summit(&self) -> Summit {
+        self.summit
     }
 }
 

@@ -8,6 +8,7 @@ use rc_fft::Complex64;
 
 use crate::grid::coarser::{Pits, coarsen, halved};
 use crate::problem::error::ProblemError;
+use crate::problem::summit::Summit;
 use crate::tiles::heights::on_demand::Heights;
 use rc_quadtree::TILE;
 
@@ -300,6 +301,26 @@ fn a_surface_without_band_limit_is_a_map() {
     let map = Ridge.sample(square(256));
     assert!(worst_tile(&heights, &map) == 0.0);
     assert_eq!(extremes(&heights), extremes_of(&map));
+}
+
+/// The reference is the highest place near all centres of a fine grid.
+#[test]
+fn the_summit_is_that_of_the_whole_surface() {
+    for waves in 20..28 {
+        let surface = SelfAffine::new(waves, 0.5, 0.1);
+        let fine = surface.sample(square(1024)).max();
+        for side in [128, 256] {
+            let source = HeightSource::Surface { surface: &surface, grid: Grid::square(side).expect("a grid") };
+            let Summit { sampled, excess } = Heights::new(source, [32; 2]).expect("finite").summit();
+            let samples = surface.sample(square(side));
+            assert!((sampled / samples.max() - 1.0).abs() < 1e-8);
+            let missed = sampled + excess - fine;
+            // The fine grid is not more than this from the summit.
+            assert!((-1e-8..2e-3).contains(&missed), "{waves}, {side}: {missed:e}, {excess:e}");
+            let on_grid = Summit::on_grid(Some(&surface), (&samples, samples.max()), Boundary::Periodic);
+            assert!((on_grid.excess - excess).abs() < 1e-3 * excess + 1e-8, "{on_grid:?}, {excess:e}");
+        }
+    }
 }
 
 #[test]
