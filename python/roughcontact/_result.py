@@ -325,7 +325,7 @@ class Result:
         return [ContactSpot(*spot) for spot in found]
 
     def stress_distribution(self, bins: int | Sequence[float] | Floats = 50) -> StressDistribution:
-        """The density P(σ) of the interfacial stress. Contact edges are located within elements.
+        """The density P(σ) of the interfacial stress. Its area is the contact area :attr:`area_fraction`.
 
         With a border level it is computed from the smallest elements.
 
@@ -346,7 +346,7 @@ class Result:
         if not np.all(np.diff(edges) > 0) or edges[0] < 0:
             raise wrong
         pressure = self._finest_pressure("stress_distribution")
-        density, area = _core.stress_distribution(pressure, self.e_star, edges.tolist())
+        density, area = _core.stress_distribution(pressure, self.e_star, edges.tolist(), self.area_fraction)
         return StressDistribution(edges, density, area)
 
     def save(self, folder: Path) -> None:

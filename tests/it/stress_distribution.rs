@@ -2,13 +2,20 @@
 
 use std::f64::consts::{PI, TAU};
 
-use rc_core::{DVec2, Field, Grid};
-use rc_kernel::Love;
-use rc_solver::{Control, Solution, StressDistribution};
+use rc_core::{DVec2, Field, Grid, HeightField, Kernel, Silent};
+use rc_fractal::{SpectrumParams, Surface};
+use rc_kernel::{Love, Spectral};
+use rc_solver::{ContactProblem, Control, Method, Solution, SolveParams, StressDistribution};
 use rc_theory::hertz::{PeriodicContact, PeriodicHertz};
 use rc_theory::westergaard::Westergaard;
 
 use crate::solved;
+
+/// The distribution of the pressure alone, and that with the solution's contact area.
+fn both(solution: &Solution<'_>, edges: &[f64]) -> [StressDistribution; 2] {
+    let (pressure, area) = (solution.pressure(), solution.area().fraction);
+    [StressDistribution::of(pressure, edges), StressDistribution::with_area(pressure, edges, area)]
+}
 
 fn solve(heights: &Field, mean_pressure: f64) -> Solution<'static> {
     solved(heights, &Love, Control::MeanPressure(mean_pressure), 1e-9)
@@ -33,8 +40,8 @@ fn the_stress_of_a_sphere_starts_linearly() {
     for offset in [0.0, 0.3, 0.5] {
         let (solution, exact) = sphere(offset);
         let edges: Vec<f64> = (0..10).map(|k| 0.1 * f64::from(k) * exact.peak_pressure).collect();
-        let found = StressDistribution::of(solution.pressure(), &edges);
         let area = PI * exact.contact_radius.powi(2);
+        let [_, found] = both(&solution, &edges);
         for (bin, density) in found.density.iter().enumerate() {
             let expected = area * (edges[bin] + edges[bin + 1]) / exact.peak_pressure.powi(2);
             let error = (density / expected - 1.0).abs();
@@ -84,5 +91,34 @@ fn the_stress_of_a_wave_is_exact_in_every_bin() {
         let expected = (place(edges[bin]) - place(edges[bin + 1])) / (edges[bin + 1] - edges[bin]);
         let error = (density / expected - 1.0).abs();
         assert!(error < 0.05, "bin {bin}: {density} against {expected}, off by {error:.1e}");
+    }
+}
+
+/// On rough surfaces, by both methods and kernels: light and heavy contacts of 5 to 16 elements for the shortest wave.
+#[test]
+fn the_area_of_the_stress_is_the_contact_area() {
+    for seed in 0..24 {
+        let spectrum = SpectrumParams { hurst: [0.3, 0.8][seed % 2], ..SpectrumParams::paper(12, 40 + seed as u64) };
+        let surface = Surface::new(&spectrum).expect("a valid spectrum");
+        let heights = surface.on(Grid::square([64, 96, 192][seed % 3]).expect("a grid"));
+        let load = Control::MeanPressure([1e-4, 1e-3, 5e-3, 2e-2][seed / 3 % 4]);
+        let (kernel, method): (&dyn Kernel, _) =
+            [(&Love as &dyn Kernel, Method::Adaptive), (&Spectral, Method::Uniform), (&Love, Method::Uniform)]
+                [seed / 2 % 3];
+        let problem = ContactProblem::new(heights, load).with_kernel(kernel);
+        let solution = problem.solve(&SolveParams::to_tolerance(1e-6).by(method), &Silent).expect("solvable");
+        let max = 1.2 * solution.pressure().max();
+        let edges: Vec<f64> = (0..=200).map(|k| 5e-3 * f64::from(k) * max).collect();
+        let [bare, found] = both(&solution, &edges);
+        let sum = |of: &StressDistribution, power: i32| {
+            let bins = of.density.iter().zip(edges.windows(2));
+            bins.map(|(p, edge)| p * (edge[1] - edge[0]) * (0.5 * (edge[0] + edge[1])).powi(power)).sum::<f64>()
+        };
+        assert!((found.area_fraction - solution.area().fraction).abs() < 1e-15);
+        assert!((sum(&found, 0) / found.area_fraction - 1.0).abs() < 1e-12, "{seed}: area {}", sum(&found, 0));
+        assert!(found.density.iter().all(|&density| density >= 0.0), "{seed}: {found:?}");
+        // The mean stress is that of the pressure alone.
+        let (stress, of_pressure) = (sum(&found, 1), sum(&bare, 1));
+        assert!((stress / of_pressure - 1.0).abs() < 2e-3, "{seed}: mean stress {stress:e}, {of_pressure:e}");
     }
 }

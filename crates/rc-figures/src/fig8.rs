@@ -194,13 +194,14 @@ impl Realisation {
         let equal: Vec<f64> = (0..=params.n_bins).map(|k| k as f64 * params.bin_width).collect();
         let ratio = 10_f64.powf((params.per_decade as f64).recip());
         let small: Vec<f64> = (0..=params.n_small).map(|k| params.first_edge * ratio.powi(k as i32)).collect();
-        let distribution = StressDistribution::of(pressure, &equal);
+        let area = solution.area().fraction;
+        let distribution = StressDistribution::with_area(pressure, &equal, area);
         Ok(Self {
-            area: solution.area().fraction,
+            area,
             lambda: Persson::fit(params.load, &points(&distribution)).lambda,
             equal: distribution,
             equal_elements: histogram(pressure, &equal),
-            small: StressDistribution::of(pressure, &small),
+            small: StressDistribution::with_area(pressure, &small, area),
             small_elements: histogram(pressure, &small),
             n_elements: pressure.grid().len(),
         })

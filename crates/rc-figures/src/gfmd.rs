@@ -178,7 +178,7 @@ impl Gfmd {
             let edges: Vec<f64> = (0..=self.params.n_bins).map(|bin| width * bin as f64).collect();
             self.distributions.push(Distribution {
                 load,
-                stress: StressDistribution::of(solution.pressure(), &edges),
+                stress: StressDistribution::with_area(solution.pressure(), &edges, observables.area.fraction),
                 theory: Persson::from_rms_slope(load, self.rms_slope),
             });
         }

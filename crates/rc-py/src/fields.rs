@@ -39,17 +39,22 @@ pub(crate) fn scene_numbers(scene: &str) -> PyResult<([f64; 2], f64, Option<u64>
 
 /// Density (1/Pa) of a pressure (Pa) over the nominal area, and the contact area.
 ///
-/// `edges` are the ends of the bins (Pa). Both results are from the same interpolation.
+/// `edges` are the ends of the bins (Pa). The contact area is `area`, if it is known.
 #[pyfunction]
+#[pyo3(signature = (pressure, e_star, edges, area=None))]
 pub(crate) fn stress_distribution<'py>(
     py: Python<'py>,
     pressure: Heights<'py>,
     e_star: f64,
     edges: Vec<f64>,
+    area: Option<f64>,
 ) -> PyResult<(Bound<'py, PyArray1<f64>>, f64)> {
     let pressure = field_of(&pressure, [1.0, 1.0], e_star)?;
     let edges: Vec<f64> = edges.into_iter().map(|edge| edge / e_star).collect();
-    let found = on_threads(py, 0, move || StressDistribution::of(&pressure, &edges))?;
+    let found = on_threads(py, 0, move || match area {
+        Some(area) => StressDistribution::with_area(&pressure, &edges, area),
+        None => StressDistribution::of(&pressure, &edges),
+    })?;
     let density = found.density.into_iter().map(|density| density / e_star).collect();
     Ok((PyArray1::from_vec(py, density), found.area_fraction))
 }

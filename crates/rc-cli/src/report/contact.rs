@@ -224,7 +224,7 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
     // In full contact P is a peak far from zero, which bins from zero on would not resolve.
     let least = pressure.min().max(0.0);
     let edges: Vec<f64> = (0..=BINS).map(|k| least + (max - least) * k as f64 / BINS as f64).collect();
-    let distribution = StressDistribution::of(pressure, &edges);
+    let distribution = StressDistribution::with_area(pressure, &edges, summary.area_fraction);
     let stress: Vec<f64> = edges.windows(2).map(|edge| 0.5 * (edge[0] + edge[1])).collect();
     let points: Vec<(f64, f64)> = stress.iter().copied().zip(distribution.density.iter().copied()).collect();
     let fit = Persson::fit(summary.mean_pressure, &points);

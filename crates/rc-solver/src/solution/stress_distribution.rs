@@ -23,7 +23,7 @@ const DIAGONALS: [[isize; 2]; 4] = [[1, 1], [1, -1], [-1, 1], [-1, -1]];
 ///
 /// Accuracy was tested on Hertz contacts with 51 elements per radius (`tests/it/stress_distribution.rs`). Bins were a
 /// tenth of the peak pressure. The error is at most 5 % in every bin, including the first, and 0.5 % from a third of
-/// the peak on. The error of the area is at most 0.2 %.
+/// the peak on. The error of the area is at most 0.2 %, unless the contact area is given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StressDistribution {
     /// Ends of the bins, in E*.
@@ -32,7 +32,7 @@ pub struct StressDistribution {
     pub edges: Vec<f64>,
     /// P, in 1/E*: the mean over each bin.
     pub density: Vec<f64>,
-    /// Part of the nominal area where the interpolated pressure is positive.
+    /// Part of the nominal area where the interpolated pressure is positive, or the given contact area.
     ///
     /// It is the integral of P over all σ > 0, whether in a bin or not.
     pub area_fraction: f64,
@@ -45,20 +45,28 @@ impl StressDistribution {
     /// density 0. The function passes over the field once, and computes only at elements in contact and beside it.
     #[must_use]
     pub fn of(pressure: &Field, edges: &[f64]) -> Self {
-        let grid = pressure.grid();
-        let surface = Squares { pressure, nx: grid.nx() as isize, ny: grid.ny() as isize };
-        let levels: Vec<f64> = [0.0].into_iter().chain(edges.iter().map(|edge| edge.max(0.0).powi(2))).collect();
-        let first_rows: Vec<usize> = (0..grid.ny()).step_by(ROWS_AT_ONCE).collect();
-        let part = |first: usize| {
-            let mut part = Exceedance::new(&levels);
-            (first..(first + ROWS_AT_ONCE).min(grid.ny())).for_each(|iy| surface.add_row(iy, &mut part));
-            part.finish()
-        };
-        let parts: Vec<Vec<f64>> = first_rows.into_par_iter().map(part).collect();
-        let mut above = vec![0.0; levels.len()];
-        for part in parts {
-            above.iter_mut().zip(part).for_each(|(sum, area)| *sum += area / grid.len() as f64);
-        }
+        Self::new(edges, |stresses| exceedance(pressure, stresses))
+    }
+
+    /// The distribution of a `pressure` whose contact area is known better, as a fraction of the nominal area.
+    ///
+    /// It is that of [`StressDistribution::of`], except for stresses up to about twice those of elements at contact
+    /// edges. The area above a stress differs there by a part of the difference of the two areas, which is all of it at
+    /// zero stress. All stresses are then scaled by a number near 1, such that ∫ σ P dσ stays as it was. The function
+    /// passes over the field four times.
+    #[must_use]
+    pub fn with_area(pressure: &Field, edges: &[f64], area_fraction: f64) -> Self {
+        let Some(shift) = Shift::to(area_fraction, pressure) else { return Self::of(pressure, edges) };
+        let of_edges = Self::new(edges, |stresses| {
+            let unscaled: Vec<f64> = stresses.iter().map(|stress| stress / shift.scale).collect();
+            exceedance(pressure, &unscaled).into_iter().map(|above| shift.of(above)).collect()
+        });
+        Self { area_fraction, ..of_edges }
+    }
+
+    /// The distribution from the areas above zero stress and above each of `edges`.
+    fn new(edges: &[f64], above: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        let above = above(&[&[0.0], edges].concat());
         let density = |(edges, above): (&[f64], &[f64])| {
             if edges[1] > edges[0] { (above[0] - above[1]) / (edges[1] - edges[0]) } else { 0.0 }
         };
@@ -68,6 +76,97 @@ impl StressDistribution {
             area_fraction: above[0],
         }
     }
+}
+
+/// The part of the nominal area where the interpolated pressure is above each of `stresses`.
+fn exceedance(pressure: &Field, stresses: &[f64]) -> Vec<f64> {
+    let grid = pressure.grid();
+    let surface = Squares { pressure, nx: grid.nx() as isize, ny: grid.ny() as isize };
+    let levels: Vec<f64> = stresses.iter().map(|stress| stress.max(0.0).powi(2)).collect();
+    let first_rows: Vec<usize> = (0..grid.ny()).step_by(ROWS_AT_ONCE).collect();
+    let part = |first: usize| {
+        let mut part = Exceedance::new(&levels);
+        (first..(first + ROWS_AT_ONCE).min(grid.ny())).for_each(|iy| surface.add_row(iy, &mut part));
+        part.finish()
+    };
+    let parts: Vec<Vec<f64>> = first_rows.into_par_iter().map(part).collect();
+    let mut above = vec![0.0; levels.len()];
+    for part in parts {
+        above.iter_mut().zip(part).for_each(|(sum, area)| *sum += area / grid.len() as f64);
+    }
+    above
+}
+
+/// A change of the area above each stress, such that the area above zero stress is a given one.
+///
+/// Between the areas above zero and above an inner stress, x goes from 1 to 0. The change is proportional to x². The
+/// density is then continuous at the inner stress, and begins as it was at zero stress, apart from a factor.
+#[derive(Clone, Copy, Debug)]
+struct Shift {
+    /// Area above zero stress, before the change.
+    all: f64,
+    /// Area above the inner stress. If it is `all`, all areas change by the same factor.
+    inner: f64,
+    /// The area above zero stress, minus `all`.
+    change: f64,
+    /// Factor of all stresses that keeps ∫ σ P dσ.
+    scale: f64,
+}
+
+/// Number of inner stresses that are tried, each twice the one before.
+///
+/// The first is twice the rms pressure of elements at edges. A sphere's distribution is too low up to there.
+const INNER_STRESSES: i32 = 12;
+
+/// Number of steps of the integral of the change over the stress.
+const STEPS: u32 = 32;
+
+impl Shift {
+    /// The change to the area `wanted`. `None` without edges of contacts.
+    ///
+    /// The area above a stress must not grow with the stress. Where the change is too large for this, the inner stress
+    /// is larger.
+    fn to(wanted: f64, pressure: &Field) -> Option<Self> {
+        let at_edges = rms_at_edges(pressure)?;
+        let inner: Vec<f64> = (1..=INNER_STRESSES).map(|k| at_edges * 2.0_f64.powi(k)).collect();
+        let above = exceedance(pressure, &[&[0.0], &inner[..]].concat());
+        let (all, change) = (above[0], wanted - above[0]);
+        let enough = above[1..].iter().position(|inner| 2.0 * change.abs() <= all - inner);
+        let Some(chosen) = enough else {
+            let scale = if wanted > 0.0 { all / wanted } else { 1.0 };
+            return Some(Self { all, inner: all, change, scale });
+        };
+        let step = inner[chosen] / f64::from(STEPS);
+        let stresses: Vec<f64> = (0..STEPS).map(|k| (f64::from(k) + 0.5) * step).collect();
+        let shift = Self { all, inner: above[chosen + 1], change, scale: 1.0 };
+        let added: f64 = exceedance(pressure, &stresses).into_iter().map(|above| shift.of(above) - above).sum();
+        Some(Self { scale: 1.0 / (1.0 + added * step / pressure.mean()), ..shift })
+    }
+
+    /// The changed area for the area `above` a stress.
+    fn of(self, above: f64) -> f64 {
+        let Self { all, inner, change, .. } = self;
+        if all <= inner {
+            return above * (1.0 + change / all);
+        }
+        let x = ((above - inner) / (all - inner)).max(0.0);
+        above + change * x * x
+    }
+}
+
+/// Rms pressure of the elements in contact beside one that is not. `None` without such elements.
+fn rms_at_edges(pressure: &Field) -> Option<f64> {
+    let grid = pressure.grid();
+    let surface = Squares { pressure, nx: grid.nx() as isize, ny: grid.ny() as isize };
+    let of_row = |iy: usize| {
+        pressure.row(iy).iter().enumerate().fold((0.0, 0), |(squares, n), (ix, &p)| {
+            let is_edge = || AXES.iter().any(|[dx, dy]| surface.at(ix as isize + dx, iy as isize + dy) <= 0.0);
+            if p > 0.0 && is_edge() { (squares + p * p, n + 1) } else { (squares, n) }
+        })
+    };
+    let rows: Vec<(f64, usize)> = (0..grid.ny()).into_par_iter().map(of_row).collect();
+    let (squares, n) = rows.into_iter().fold((0.0, 0), |sum, row| (sum.0 + row.0, sum.1 + row.1));
+    (n > 0).then(|| (squares / n as f64).sqrt())
 }
 
 /// The squares between the centres of elements, with p² at their corners.
