@@ -117,8 +117,8 @@ fn the_area_of_the_stress_is_the_contact_area() {
         assert!((found.area_fraction - solution.area().fraction).abs() < 1e-15);
         assert!((sum(&found, 0) / found.area_fraction - 1.0).abs() < 1e-12, "{seed}: area {}", sum(&found, 0));
         assert!(found.density.iter().all(|&density| density >= 0.0), "{seed}: {found:?}");
-        // The mean stress is that of the pressure alone.
-        let (stress, of_pressure) = (sum(&found, 1), sum(&bare, 1));
-        assert!((stress / of_pressure - 1.0).abs() < 2e-3, "{seed}: mean stress {stress:e}, {of_pressure:e}");
+        // The mean stress is not less accurate than that of the pressure alone. Bins add the error of their middles.
+        let [before, after] = [&bare, &found].map(|of| (sum(of, 1) / solution.info().mean_pressure - 1.0).abs());
+        assert!(after < before + 1e-3, "{seed}: the mean stress is off by {after:e}, and by {before:e} before");
     }
 }

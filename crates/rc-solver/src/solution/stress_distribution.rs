@@ -52,8 +52,8 @@ impl StressDistribution {
     ///
     /// It is that of [`StressDistribution::of`], except for stresses up to about twice those of elements at contact
     /// edges. The area above a stress differs there by a part of the difference of the two areas, which is all of it at
-    /// zero stress. All stresses are then scaled by a number near 1, such that ∫ σ P dσ stays as it was. The function
-    /// passes over the field four times.
+    /// zero stress. Where ∫ σ P dσ would then be farther from the mean pressure, all stresses are scaled by a number
+    /// near 1. The function passes over the field four times.
     #[must_use]
     pub fn with_area(pressure: &Field, edges: &[f64], area_fraction: f64) -> Self {
         let Some(shift) = Shift::to(area_fraction, pressure) else { return Self::of(pressure, edges) };
@@ -109,7 +109,7 @@ struct Shift {
     inner: f64,
     /// The area above zero stress, minus `all`.
     change: f64,
-    /// Factor of all stresses that keeps ∫ σ P dσ.
+    /// Factor of all stresses. With it, ∫ σ P dσ is as near to the mean pressure as before the change.
     scale: f64,
 }
 
@@ -118,8 +118,8 @@ struct Shift {
 /// The first is twice the rms pressure of elements at edges. A sphere's distribution is too low up to there.
 const INNER_STRESSES: i32 = 12;
 
-/// Number of steps of the integral of the change over the stress.
-const STEPS: u32 = 32;
+/// Number of steps of the integral over the stress.
+const STEPS: u32 = 256;
 
 impl Shift {
     /// The change to the area `wanted`. `None` without edges of contacts.
@@ -132,15 +132,20 @@ impl Shift {
         let above = exceedance(pressure, &[&[0.0], &inner[..]].concat());
         let (all, change) = (above[0], wanted - above[0]);
         let enough = above[1..].iter().position(|inner| 2.0 * change.abs() <= all - inner);
-        let Some(chosen) = enough else {
-            let scale = if wanted > 0.0 { all / wanted } else { 1.0 };
-            return Some(Self { all, inner: all, change, scale });
-        };
-        let step = inner[chosen] / f64::from(STEPS);
+        let inner = enough.map_or(all, |chosen| above[chosen + 1]);
+        Some(Self { all, inner, change, scale: 1.0 }.scaled(pressure))
+    }
+
+    /// The change with the scale of stresses.
+    fn scaled(self, pressure: &Field) -> Self {
+        let step = pressure.max() / f64::from(STEPS);
         let stresses: Vec<f64> = (0..STEPS).map(|k| (f64::from(k) + 0.5) * step).collect();
-        let shift = Self { all, inner: above[chosen + 1], change, scale: 1.0 };
-        let added: f64 = exceedance(pressure, &stresses).into_iter().map(|above| shift.of(above) - above).sum();
-        Some(Self { scale: 1.0 / (1.0 + added * step / pressure.mean()), ..shift })
+        let above = exceedance(pressure, &stresses);
+        let (before, mean) = (step * above.iter().sum::<f64>(), pressure.mean());
+        let changed: f64 = step * above.into_iter().map(|above| self.of(above)).sum::<f64>();
+        let error = (before - mean).abs();
+        let scale = if changed > 0.0 { changed.clamp(mean - error, mean + error) / changed } else { 1.0 };
+        Self { scale, ..self }
     }
 
     /// The changed area for the area `above` a stress.
