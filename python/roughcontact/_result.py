@@ -321,7 +321,7 @@ class Result:
         if gap is None:
             # With a hardness, edges follow from the overlap that plastic flow has removed.
             gap = self.gap if self.plastic_gap is None else self.gap - self.plastic_gap
-        found = _core.spots(pressure, gap, self.sides, self.e_star, self.scene)
+        found = _core.spots((pressure, gap), (self.sides, self.e_star), self.scene, self.area_fraction)
         return [ContactSpot(*spot) for spot in found]
 
     def stress_distribution(self, bins: int | Sequence[float] | Floats = 50) -> StressDistribution:

@@ -6,6 +6,7 @@ mod adaptive;
 mod bisinusoidal;
 mod conductance;
 mod contact_area;
+mod contact_spots;
 mod examples;
 mod free;
 mod free_adaptive;

@@ -48,7 +48,7 @@ fn held(surface: &Surface, kernel: &dyn Kernel, load: Control, as_map: bool) -> 
 fn assert_bars_hold(seeds: Range<usize>, kernels: [&dyn Kernel; 2], as_map: bool) -> f64 {
     let n_scenes = 3 * seeds.len();
     let of_scene = |seed: usize| {
-        let amplitudes = if seed % 2 == 0 { Amplitudes::Random } else { Amplitudes::Fixed };
+        let amplitudes = if seed.is_multiple_of(2) { Amplitudes::Random } else { Amplitudes::Fixed };
         let surface = surface([0.3, 0.5, 0.8, 1.0][seed / 2 % 4], amplitudes, seed);
         held(&surface, kernels[seed / 4 % 2], Control::MeanPressure([1e-4, 1e-3, 1e-2][seed % 3]), as_map)
     };

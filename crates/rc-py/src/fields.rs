@@ -64,16 +64,16 @@ const ROUNDING: f64 = 1e-12;
 
 /// Contact spots of a pressure (Pa) and a gap (m), largest first.
 ///
-/// `scene` is the text of their `scene.toml`. With a hardness, the overlap that plastic flow has removed is subtracted
+/// `scene` is the text of their `scene.toml`. Lengths of the sides are in m, and E* is in Pa. The areas add up to
+/// `area_fraction`. With a hardness, the overlap that plastic flow has removed is subtracted
 /// from the gap.
 #[pyfunction]
 pub(crate) fn spots(
     py: Python<'_>,
-    pressure: Heights<'_>,
-    gap: Heights<'_>,
-    sides: [f64; 2],
-    e_star: f64,
+    (pressure, gap): (Heights<'_>, Heights<'_>),
+    (sides, e_star): ([f64; 2], f64),
     scene: &str,
+    area_fraction: f64,
 ) -> PyResult<Vec<Spot>> {
     let keys = rc_cli::scene::file::parse(scene).map_err(bad_input)?.contact;
     let bias = keys.kernel.and_then(resolve::kernel).map_or_else(EdgeBias::default, Kernel::edge_bias);
@@ -83,7 +83,8 @@ pub(crate) fn spots(
     }
     let boundary = keys.boundary.unwrap_or_default();
     let hardness = keys.hardness.map_or(f64::INFINITY, |hardness| (1.0 - ROUNDING) * hardness / e_star);
-    let spots = on_threads(py, 0, move || ContactSpot::with_hardness([&pressure, &gap], hardness, bias, boundary))?;
+    let spots =
+        on_threads(py, 0, move || ContactSpot::with_area([&pressure, &gap], hardness, bias, boundary, area_fraction))?;
     let in_si = |spot: ContactSpot| {
         let ContactSpot { elements, area_fraction, perimeter, euler_number, mean_pressure } = spot;
         (elements, area_fraction, perimeter * sides[0], euler_number, mean_pressure * e_star)

@@ -47,7 +47,7 @@ impl SpotSizes {
             field
         };
         let (pressure, gap) = (over(pressure, e_star), over(gap, side));
-        let spots = ContactSpot::with_hardness([&pressure, &gap], hardness, bias, boundary);
+        let spots = ContactSpot::with_area([&pressure, &gap], hardness, bias, boundary, summary.area_fraction);
         Self::of(&spots, pressure.grid(), side)
     }
 

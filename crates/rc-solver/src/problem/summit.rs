@@ -34,12 +34,11 @@ impl Summit {
         boundary: Boundary,
     ) -> Self {
         let around = Neighbourhood { samples, boundary };
-        let excess = match surface {
-            Some(surface) => around.excess_of_surface(surface, sampled),
-            None => {
-                let tops = around.tops(Fit::rise_of_map);
-                OF_FIT * tops.iter().map(|top| top.height + top.rise - sampled).fold(0.0, f64::max)
-            }
+        let excess = if let Some(surface) = surface {
+            around.excess_of_surface(surface, sampled)
+        } else {
+            let tops = around.tops(Fit::rise_of_map);
+            OF_FIT * tops.iter().map(|top| top.height + top.rise - sampled).fold(0.0, f64::max)
         };
         Self { sampled, excess }
     }

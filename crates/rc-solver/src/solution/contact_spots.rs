@@ -16,7 +16,8 @@ pub struct ContactSpot {
     /// Ratio of its area to the area of the cell.
     ///
     /// Edges are located between the centres of elements, as for [`ContactArea::fraction`]. The areas of all spots add
-    /// up to the contact area. The area of a spot of one element may be wrong by half an element.
+    /// up to the contact area. Each is at least a tenth of its elements if the contact area allows it, and above zero if
+    /// that is. The area of a spot of one element may be wrong by half an element.
     pub area_fraction: f64,
     /// Length of its edge, in λ ([`ContactArea::perimeter`]).
     pub perimeter: f64,
@@ -58,11 +59,41 @@ impl ContactSpot {
     /// # Panics
     /// As [`ContactSpot::all`].
     #[must_use]
-    pub fn with_hardness([pressure, gap]: [&Field; 2], hardness: f64, bias: EdgeBias, boundary: Boundary) -> Vec<Self> {
+    pub fn with_hardness(fields: [&Field; 2], hardness: f64, bias: EdgeBias, boundary: Boundary) -> Vec<Self> {
+        Self::located(fields, hardness, bias, boundary, None)
+    }
+
+    /// The spots, as [`ContactSpot::with_hardness`], of a solution with the contact area `area_fraction`.
+    ///
+    /// Their areas add up to it. It differs from the area on the fields where these are means over the elements of the
+    /// solution, or where the mesh was not the grid.
+    ///
+    /// # Panics
+    /// As [`ContactSpot::all`].
+    #[must_use]
+    pub fn with_area(
+        fields: [&Field; 2],
+        hardness: f64,
+        bias: EdgeBias,
+        boundary: Boundary,
+        area_fraction: f64,
+    ) -> Vec<Self> {
+        Self::located(fields, hardness, bias, boundary, Some(area_fraction))
+    }
+
+    /// The spots with this contact area, or with that of the fields.
+    fn located(
+        [pressure, gap]: [&Field; 2],
+        hardness: f64,
+        bias: EdgeBias,
+        boundary: Boundary,
+        area_fraction: Option<f64>,
+    ) -> Vec<Self> {
         assert_eq!(pressure.grid(), gap.grid(), "pressure and gap on the same grid");
         let grid = pressure.grid();
         let (nx, ny) = (grid.nx(), grid.ny());
         let sides = grid.spacing().into();
+        let mut all = EdgeSums::default();
         let spot = |elements: Vec<usize>| {
             let (mut sums, mut load) = (EdgeSums::default(), 0.0);
             for &element in &elements {
@@ -72,6 +103,7 @@ impl ContactSpot {
                 sums.add(sides, hardness, &around);
             }
             let area = ContactArea::from_sums(&[sums], grid, bias);
+            all += sums;
             Self {
                 elements: elements.len(),
                 area_fraction: area.fraction,
@@ -81,10 +113,49 @@ impl ContactSpot {
             }
         };
         let mut spots: Vec<Self> = connected(pressure, boundary).into_iter().map(spot).collect();
+        share(&mut spots, area_fraction.unwrap_or_else(|| ContactArea::from_sums(&[all], grid, bias).fraction), grid);
         spots.sort_by(|a, b| b.area_fraction.total_cmp(&a.area_fraction));
         spots
     }
 }
+
+/// Smallest area of a spot, in its elements. It carries load, so it has an area.
+const SMALLEST: f64 = 0.1;
+
+/// Changes the areas of `spots` on `grid` so that they add up to `area`.
+///
+/// All edges are moved by the same distance. No spot becomes smaller than [`SMALLEST`], unless `area` is too small for
+/// that.
+fn share(spots: &mut [ContactSpot], area: f64, grid: Grid) {
+    let smallest = |spot: &ContactSpot| SMALLEST * spot.elements as f64 / grid.len() as f64;
+    let moved =
+        |spot: &ContactSpot, distance: f64| (spot.area_fraction + distance * spot.perimeter).max(smallest(spot));
+    let total = |distance: f64| spots.iter().map(|spot| moved(spot, distance)).sum::<f64>();
+    let edges: f64 = spots.iter().map(|spot| spot.perimeter).sum();
+    // All spots are the smallest at the first distance, and too large at the second.
+    let most_inward = |spot: &ContactSpot| (smallest(spot) - spot.area_fraction) / spot.perimeter;
+    let with_edges = spots.iter().filter(|spot| spot.perimeter > 0.0);
+    let mut low = with_edges.map(most_inward).fold(0.0, f64::min);
+    let all: f64 = spots.iter().map(|spot| spot.area_fraction).sum();
+    let mut high = if edges > 0.0 { ((area - all) / edges).max(low) } else { low };
+    if total(low) < area {
+        // Halvings of an interval end when its ends are neighbours.
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            if total(middle) < area { low = middle } else { high = middle }
+        }
+    }
+    let distance = low;
+    // What rounding leaves, or the whole difference where there are no edges to move.
+    let found = total(distance);
+    let factor = if area > 0.0 && found > 0.0 { area / found } else { 1.0 };
+    for spot in spots {
+        spot.area_fraction = factor * moved(spot, distance);
+    }
+}
+
+/// Number of halvings of the distance by which edges move.
+const BISECTIONS: usize = 60;
 
 /// The elements in contact of each spot, in the order in which spots begin.
 ///
@@ -128,6 +199,7 @@ fn neighbours(grid: Grid, [ix, iy]: [usize; 2], boundary: Boundary) -> [usize; 4
 
 #[cfg(test)]
 mod tests {
+    use rc_core::testing::quasi_random;
     use rc_core::{DVec2, Kernel as _};
     use rc_kernel::Love;
 
@@ -203,6 +275,33 @@ mod tests {
         assert!((spots[0].area_fraction / exact - 1.0).abs() < 5e-3, "{spots:?} for {exact}");
         let elastic = ContactSpot::all(&pressure, &gap, bias);
         assert!((elastic[0].area_fraction / exact - 1.0).abs() > 1e-2, "{elastic:?} for {exact}");
+    }
+
+    /// Spots of single elements, pairs and more, with areas below zero by their gaps.
+    #[test]
+    fn every_spot_has_an_area_and_all_add_up_to_the_contact() {
+        let grid = Grid::square(64).expect("a grid");
+        for (seed, part) in [(1, 0.02), (2, 0.1), (3, 0.3), (4, 0.7), (5, 1.0)] {
+            let noise = |i: usize| quasi_random((i * i + 7919 * seed * i) % 1_000_003);
+            let value = |i: usize| if noise(i) < part { 1e-3 * (0.01 + noise(i + 5000)) } else { 0.0 };
+            let pressure = Field::new(grid, (0..grid.len()).map(value).collect()).expect("a field");
+            let gap =
+                pressure.values().iter().enumerate().map(|(i, p)| if *p > 0.0 { 0.0 } else { 1e-4 * noise(i + 9) });
+            let gap = Field::new(grid, gap.collect()).expect("a field");
+            let bias = Love.edge_bias();
+            let of_fields = ContactArea::of(&pressure, &gap, bias).fraction;
+            let on_fields = (ContactSpot::all(&pressure, &gap, bias), of_fields);
+            let element = 1.0 / grid.len() as f64;
+            let given = [0.2 * element, 0.5 * of_fields, 1.05 * of_fields].map(|area| {
+                let fields = [&pressure, &gap];
+                (ContactSpot::with_area(fields, f64::INFINITY, bias, Boundary::Periodic, area), area)
+            });
+            for (spots, area) in std::iter::once(on_fields).chain(given).filter(|(_, area)| *area > 0.0) {
+                let sum: f64 = spots.iter().map(|spot| spot.area_fraction).sum();
+                assert!((sum / area - 1.0).abs() < 1e-12, "{part}: {sum} for {area}");
+                assert!(spots.iter().all(|spot| spot.area_fraction > 0.0), "{part}, {area}: {spots:?}");
+            }
+        }
     }
 
     #[test]
