@@ -64,17 +64,18 @@ const ROUNDING: f64 = 1e-12;
 
 /// Contact spots of a pressure (Pa) and a gap (m), largest first.
 ///
-/// `scene` is the text of their `scene.toml`. Lengths of the sides are in m, and E* is in Pa. The areas add up to
-/// `area_fraction`. With a hardness, the overlap that plastic flow has removed is subtracted
-/// from the gap.
+/// `fields` are these two. `units` are the sides of the cell (m) and E* (Pa). `scene` is the text of their
+/// `scene.toml`. The areas add up to `area_fraction`. With a hardness, the overlap that plastic flow has removed is
+/// subtracted from the gap.
 #[pyfunction]
 pub(crate) fn spots(
     py: Python<'_>,
-    (pressure, gap): (Heights<'_>, Heights<'_>),
-    (sides, e_star): ([f64; 2], f64),
+    fields: (Heights<'_>, Heights<'_>),
+    units: ([f64; 2], f64),
     scene: &str,
     area_fraction: f64,
 ) -> PyResult<Vec<Spot>> {
+    let ((pressure, gap), (sides, e_star)) = (fields, units);
     let keys = rc_cli::scene::file::parse(scene).map_err(bad_input)?.contact;
     let bias = keys.kernel.and_then(resolve::kernel).map_or_else(EdgeBias::default, Kernel::edge_bias);
     let (pressure, gap) = (field_of(&pressure, sides, e_star)?, field_of(&gap, sides, sides[0])?);
