@@ -278,8 +278,12 @@ mod tests {
         for (waves, n) in [(1, 8), (1, 17), (3, 29), (5, 64)] {
             let map = EggBox(waves).sample(Grid::square(n).expect("a grid"));
             let found = of_map(&map, Boundary::Periodic);
-            let ratio = found.excess / (2.0 - found.sampled);
-            assert!((0.95..1.5).contains(&ratio), "{waves} waves on {n}²: {found:?}");
+            let excess = 2.0 - found.sampled;
+            // All summits are equally high. That with the largest error of its fit counts, which is a part of the
+            // largest distance to a sample.
+            let of_fit = 0.03 * 2.0 * (1.0 - (0.5 * TAU * waves as f64 / n as f64).cos());
+            let allowed = 0.95 * excess..1.5 * excess + of_fit;
+            assert!(allowed.contains(&found.excess), "{waves} waves on {n}²: {found:?}, {allowed:?}");
         }
         // A ridge across the axes.
         let ridge = sampled(64, |at| {
