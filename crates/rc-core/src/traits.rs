@@ -26,7 +26,7 @@ pub enum Boundary {
 ///
 /// The solver locates contact edges by interpolation between the centres of elements. Each constant gives a term of the
 /// correction. The terms of the first three are subtracted from the resulting contact area, in units of the area of an
-/// element. The term of the last constant is added to Σ p².
+/// element. The next three correct Σ p² over elements, at edges and inside contacts. The last three widen error bars.
 ///
 /// The constants are fitted for each kernel (`docs/accuracy.md`). The default is for kernels similar to Love's squares,
 /// which have a uniform pressure on each element.
@@ -50,6 +50,40 @@ pub struct EdgeBias {
     ///
     /// Its unit is the square of the pressure beside the edge.
     pub per_square: f64,
+    /// Term added to Σ p² for each two neighbours in contact. Its unit is the square of their difference of pressure.
+    ///
+    /// In full contact, the squared amplitude of a wave q has the factor (L/L∞)² for the kernel's symbol L and that of
+    /// the solid, L∞. On elements of the side h, Love's squares have L/L∞ = 1 - (q h)²/24 + …, and p² is too large by
+    /// h² ⟨|∇p|²⟩/12. A kernel that is exact for long waves has 0 here.
+    pub per_difference: f64,
+    /// Term added to Σ p² for each three elements in a line in contact. Its unit is the square of their second
+    /// difference.
+    pub per_second_difference: f64,
+    /// 95 % error of [`EdgeBias::per_edge`], as a common error of all edges.
+    pub per_edge_error: f64,
+    /// 95 % error of [`EdgeBias::per_difference`].
+    pub per_difference_error: f64,
+    /// 95 % errors of the mean gap and of the penetration: one common to all edges, and one for each of the independent
+    /// edges, as a mean over them.
+    ///
+    /// Their unit is h ⟨p²⟩/(σ0 E*) for elements of the side h and the mean pressure σ0, times the ratio of elements at
+    /// edges to elements in contact.
+    pub gap_errors: [f64; 2],
+}
+
+impl EdgeBias {
+    /// The constants of values without a discretisation error.
+    pub const NONE: Self = Self {
+        per_edge: 0.0,
+        per_contact: 0.0,
+        per_deviation: 0.0,
+        per_square: 0.0,
+        per_difference: 0.0,
+        per_second_difference: 0.0,
+        per_edge_error: 0.0,
+        per_difference_error: 0.0,
+        gap_errors: [0.0; 2],
+    };
 }
 
 impl Default for EdgeBias {
@@ -57,7 +91,17 @@ impl Default for EdgeBias {
     ///
     /// The pressure is uniform on each element, and the displacement is taken at its centre.
     fn default() -> Self {
-        Self { per_edge: 0.029, per_contact: -0.21, per_deviation: -0.0275, per_square: -0.06 }
+        Self {
+            per_edge: 0.029,
+            per_contact: -0.21,
+            per_deviation: -0.0275,
+            per_square: 0.05,
+            per_difference: -0.0743,
+            per_second_difference: 0.0249,
+            per_edge_error: 0.0,
+            per_difference_error: 0.006,
+            gap_errors: [0.029, 0.13],
+        }
     }
 }
 
@@ -130,10 +174,11 @@ pub trait Kernel: Sync {
 
     /// First-order shift of the edges of contacts by the discretisation.
     ///
-    /// The shift only corrects observables. The pressure does not depend on it. Short waves dominate at an edge, and
-    /// most solids respond to short waves like a half-space. Therefore the default fits every kernel whose elements are
-    /// similar to Love's squares.
-    fn edge_bias(&self) -> EdgeBias {
+    /// The shift only corrects observables on elements of the size of those of `grid`. The pressure does not depend on
+    /// it. Short waves dominate at an edge, and most solids respond to short waves like a half-space. Therefore the
+    /// default fits every kernel whose elements are similar to Love's squares.
+    fn edge_bias(&self, grid: Grid) -> EdgeBias {
+        let _ = grid;
         EdgeBias::default()
     }
 

@@ -181,7 +181,7 @@ impl Figure for Challenge {
         let surface = params.source.surface()?;
         let moments = surface.moments();
         let areas = |solution: &Solution<'_>| {
-            let spots = ContactSpot::all(solution.pressure(), solution.gap(), Love.edge_bias());
+            let spots = ContactSpot::all(solution.pressure(), solution.gap(), Love.edge_bias(solution.grid()));
             spots.iter().map(|spot| spot.area_fraction).collect()
         };
         let point = |&load: &f64| {

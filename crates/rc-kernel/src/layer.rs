@@ -35,6 +35,12 @@ pub struct Layer {
 }
 
 impl Layer {
+    /// The thickness in sides of an element of `grid`.
+    fn in_elements(self, grid: Grid) -> f64 {
+        let sides = grid.spacing();
+        self.thickness / (sides.x * sides.y).sqrt()
+    }
+
     /// The factor M(ξ) for ξ ≥ 0.
     ///
     /// It is 0 at 0, positive beyond, and tends to 1. The relative error is a few roundings.
@@ -131,6 +137,24 @@ impl Kernel for LoveLayer {
         })
     }
 
+    /// That of [`Love`], and terms that vanish for layers of several elements.
+    ///
+    /// A layer thinner than an element responds like a bed of springs. At an edge, the pressure is then proportional to
+    /// the distance, and the edge is located too far out. Inside, the pressure of an element is that at its centre.
+    fn edge_bias(&self, grid: Grid) -> EdgeBias {
+        let (half_space, thickness) = (Love.edge_bias(grid), self.0.in_elements(grid));
+        let (shift, springs) = (0.105 * (-1.43 * thickness).exp(), (-thickness / 2.2).exp());
+        EdgeBias {
+            per_edge: half_space.per_edge + shift,
+            per_edge_error: half_space.per_edge_error + 0.5 * shift,
+            per_difference: half_space.per_difference + 0.12 * springs,
+            per_second_difference: half_space.per_second_difference - 0.08 * springs,
+            per_difference_error: half_space.per_difference_error + 0.09 * (-thickness / 3.0).exp(),
+            gap_errors: half_space.gap_errors.map(|error| error * stiffening(thickness)),
+            ..half_space
+        }
+    }
+
     fn uniform_displacement(&self) -> Option<f64> {
         Some(self.0.uniform_displacement())
     }
@@ -138,6 +162,13 @@ impl Kernel for LoveLayer {
     fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {
         Some(Arc::new(*self))
     }
+}
+
+/// Displacement that an error of the pressure at an edge causes, relative to the half-space.
+///
+/// The layer has a thickness in elements.
+fn stiffening(thickness: f64) -> f64 {
+    1.0 - (-0.25 * thickness).exp()
 }
 
 /// Aliases along one axis, nearest first. Each is a wavenumber and the mean of its wave over an element.
@@ -191,8 +222,16 @@ impl Kernel for SpectralLayer {
         Some(Arc::new(*self))
     }
 
-    fn edge_bias(&self) -> EdgeBias {
-        Spectral.edge_bias()
+    fn edge_bias(&self, grid: Grid) -> EdgeBias {
+        let (half_space, thickness) = (Spectral.edge_bias(grid), self.0.in_elements(grid));
+        let shift = 0.03 * (-1.4 * thickness).exp();
+        EdgeBias {
+            per_edge: half_space.per_edge + shift,
+            per_edge_error: half_space.per_edge_error + shift,
+            per_difference_error: 0.03 * (-thickness / 6.0).exp(),
+            gap_errors: half_space.gap_errors.map(|error| error * stiffening(thickness)),
+            ..half_space
+        }
     }
 }
 

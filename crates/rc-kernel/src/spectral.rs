@@ -26,8 +26,18 @@ impl Kernel for Spectral {
         })
     }
 
-    fn edge_bias(&self) -> EdgeBias {
-        EdgeBias { per_edge: 0.0417, per_contact: -0.32, per_deviation: -0.043, per_square: 0.014 }
+    fn edge_bias(&self, _grid: Grid) -> EdgeBias {
+        EdgeBias {
+            per_edge: 0.0417,
+            per_contact: -0.32,
+            per_deviation: -0.043,
+            per_square: 0.0186,
+            per_difference: 0.0,
+            per_second_difference: 0.0,
+            per_edge_error: 0.0,
+            per_difference_error: 0.0,
+            gap_errors: [0.001, 0.11],
+        }
     }
 
     fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {

@@ -3,7 +3,7 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use rc_cli::scene::resolve;
-use rc_core::{EdgeBias, Field, Grid, Kernel, PeriodicCell};
+use rc_core::{EdgeBias, Field, Grid, PeriodicCell};
 use rc_solver::{ContactSpot, StressDistribution};
 use rc_sweep::{LeakageSummary, Summary, to_json};
 
@@ -77,11 +77,12 @@ pub(crate) fn spots(
 ) -> PyResult<Vec<Spot>> {
     let ((pressure, gap), (sides, e_star)) = (fields, units);
     let keys = rc_cli::scene::file::parse(scene).map_err(bad_input)?.contact;
-    let bias = keys.kernel.and_then(resolve::kernel).map_or_else(EdgeBias::default, Kernel::edge_bias);
     let (pressure, gap) = (field_of(&pressure, sides, e_star)?, field_of(&gap, sides, sides[0])?);
     if pressure.grid() != gap.grid() {
         return Err(bad_input(format_args!("gap: {} elements, but the pressure has {}", gap.grid(), pressure.grid())));
     }
+    let kernel = keys.kernel.and_then(resolve::kernel);
+    let bias = kernel.map_or_else(EdgeBias::default, |kernel| kernel.edge_bias(pressure.grid()));
     let boundary = keys.boundary.unwrap_or_default();
     let hardness = keys.hardness.map_or(f64::INFINITY, |hardness| (1.0 - ROUNDING) * hardness / e_star);
     let spots =

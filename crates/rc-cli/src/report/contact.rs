@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rc_core::{Boundary, EdgeBias, Kernel};
+use rc_core::{Boundary, EdgeBias};
 use rc_solver::StressDistribution;
 use rc_theory::persson::Persson;
 use serde::Serialize;
@@ -81,7 +81,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
         .map_err(|cause| CliError::in_file(&scene_path, format_args!("cannot read this scene file: {cause}")))?;
     let scene = file::parse(&scene_text).map_err(|message| CliError::in_file(&scene_path, message))?;
     let kernel = resolve::kernel(scene.contact.kernel.unwrap_or(KernelName::Love));
-    let bias = kernel.map_or_else(EdgeBias::default, Kernel::edge_bias);
+    let bias = kernel.map_or_else(EdgeBias::default, |kernel| kernel.edge_bias(result.pressure.grid()));
     let summary = &result.summary;
     let load = match summary.control.as_str() {
         "penetration" => format!("at a penetration of {}", engineering(summary.penetration, "m")),

@@ -52,16 +52,16 @@ impl Response<'_> {
             (response, _) => Response::Outlived {
                 stiffness: response.stiffness(solution, hardness),
                 displacement: response.displacement(&solution.pressure),
-                bias: response.edge_bias(),
+                bias: response.edge_bias(solution.pressure.grid()),
                 boundary: response.boundary(solution.pressure.grid()),
             },
         }
     }
 
     /// The shift of contact edges. For an operator it is the default shift.
-    pub(crate) fn edge_bias(&self) -> EdgeBias {
+    pub(crate) fn edge_bias(&self, grid: Grid) -> EdgeBias {
         match self {
-            Self::Kernel(kernel) => kernel.get().edge_bias(),
+            Self::Kernel(kernel) => kernel.get().edge_bias(grid),
             Self::Operator(_) => EdgeBias::default(),
             Self::Outlived { bias, .. } => *bias,
         }
@@ -144,7 +144,7 @@ impl Solved for GridSolved<'_> {
 
     fn observables(&self) -> Observables {
         let boundary = self.response.boundary(self.grid());
-        Observables::of(&self.solution, self.hardness, self.response.edge_bias(), boundary)
+        Observables::of(&self.solution, self.hardness, self.response.edge_bias(self.grid()), boundary)
     }
 
     fn stiffness(&self) -> f64 {

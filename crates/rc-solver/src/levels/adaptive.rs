@@ -176,7 +176,7 @@ impl<'a> TileLevels<'a> {
         let Finest { grid, level, history, .. } = solved;
         let SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, .. } = level;
         let (contact_gap, hardness) = (outcome.contact_gap, self.problem.bounds.hardness);
-        let bias = self.kernel.get().edge_bias();
+        let bias = self.kernel.get().edge_bias(grid);
         let values = Values { mesh: &elements, pressure: &pressure, gap: &gap, contact_gap, hardness, bias };
         let (area, plastic) = (values.contact_area(grid), values.plastic_edges(grid));
         let mut info = outcome.info(&self.problem, history.levels, history.coarser);

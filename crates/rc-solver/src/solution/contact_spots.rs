@@ -220,7 +220,7 @@ mod tests {
         let pressure = Field::from_fn(grid, |DVec2 { x, y }| depth(x, y).max(0.0).sqrt());
         let gap = Field::from_fn(grid, |DVec2 { x, y }| 4.0 / 3.0 * (-depth(x, y)).max(0.0).powf(1.5));
         // Values this exact have no first-order error to subtract.
-        let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_deviation: 0.0, per_square: 0.0 };
+        let none = EdgeBias::NONE;
         let spots = ContactSpot::all(&pressure, &gap, none);
         assert_eq!(spots.len(), 2);
         for (spot, (_, a)) in spots.iter().zip(circles) {
@@ -229,7 +229,7 @@ mod tests {
             assert!((spot.perimeter / edge - 1.0).abs() < 2e-2, "{spot:?} against {edge}");
             assert!((spot.euler_number - 1.0).abs() < 1e-12, "{spot:?}");
         }
-        let bias = Love.edge_bias();
+        let bias = Love.edge_bias(grid);
         let (spots, all) = (ContactSpot::all(&pressure, &gap, bias), ContactArea::of(&pressure, &gap, bias));
         let sum = |of: fn(&ContactSpot) -> f64| spots.iter().map(of).sum::<f64>();
         assert!((sum(|spot| spot.area_fraction) / all.fraction - 1.0).abs() < 1e-12);
@@ -241,7 +241,7 @@ mod tests {
     /// Each edge is located with the side of the element across it. The squares have the same size.
     #[test]
     fn elements_that_are_not_squares_locate_edges_as_well() {
-        let none = EdgeBias { per_edge: 0.0, per_contact: 0.0, per_deviation: 0.0, per_square: 0.0 };
+        let none = EdgeBias::NONE;
         let depth = |x: f64, y: f64| 0.23 - (x - 0.501).hypot(y - 0.497);
         let found = |nx: usize, ny: usize| {
             let grid = Grid::new(nx, ny).expect("a grid");
@@ -266,7 +266,7 @@ mod tests {
         let depth = |DVec2 { x, y }| radius - (x - 0.5_f64).hypot(y - 0.5);
         let pressure = Field::from_fn(grid, |at| if depth(at) > 0.0 { hardness } else { 0.0 });
         let gap = Field::from_fn(grid, |at| -depth(at));
-        let bias = Love.edge_bias();
+        let bias = Love.edge_bias(grid);
         let spots = ContactSpot::with_hardness([&pressure, &gap], hardness, bias, Boundary::Periodic);
         let area = ContactArea::of_hard([&pressure, &gap], hardness, bias, Boundary::Periodic);
         assert_eq!(spots.len(), 1);
@@ -288,7 +288,7 @@ mod tests {
             let gap =
                 pressure.values().iter().enumerate().map(|(i, p)| if *p > 0.0 { 0.0 } else { 1e-4 * noise(i + 9) });
             let gap = Field::new(grid, gap.collect()).expect("a field");
-            let bias = Love.edge_bias();
+            let bias = Love.edge_bias(grid);
             let of_fields = ContactArea::of(&pressure, &gap, bias).fraction;
             let on_fields = (ContactSpot::all(&pressure, &gap, bias), of_fields);
             let element = 1.0 / grid.len() as f64;
@@ -315,10 +315,10 @@ mod tests {
         ];
         let grid = Grid::square(4).expect("a grid");
         let field = Field::new(grid, values).expect("a field");
-        let spots = ContactSpot::all(&field, &Field::zeros(grid), Love.edge_bias());
+        let spots = ContactSpot::all(&field, &Field::zeros(grid), Love.edge_bias(grid));
         assert_eq!(spots.iter().map(|spot| spot.elements).collect::<Vec<_>>(), [3, 1]);
         assert!((spots[0].mean_pressure - 0.5).abs() < 1e-15, "{spots:?}");
-        assert_eq!(ContactSpot::all(&Field::zeros(grid), &Field::zeros(grid), Love.edge_bias()), []);
+        assert_eq!(ContactSpot::all(&Field::zeros(grid), &Field::zeros(grid), Love.edge_bias(grid)), []);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use rc_core::{Boundary, EdgeBias};
 use crate::descent::info::GridSolution;
 use crate::descent::info::SolveInfo;
 use crate::parallel;
-use crate::solution::contact_area::area::ContactArea;
+use crate::solution::contact_area::area::{ContactArea, Rim};
 use crate::solution::contact_area::plastic::PlasticContact;
 use crate::solution::contact_area::plastic::PlasticEdges;
 
@@ -65,7 +65,10 @@ impl Observables {
         // Where the pressure leaves q = H - p to the hardness, edges of q are like other edges. p² is H² - 2 H q + q².
         let rest = plastic.map(|edges| edges.rest);
         let of_rest = |of_area: &dyn Fn(&ContactArea) -> f64| rest.as_ref().map_or(0.0, of_area);
-        let missing_square = area.missing_square + of_rest(&|rest| rest.missing_square);
+        // Differences of p are also those of q.
+        let missing_square = area.missing_square
+            + of_rest(&|rest| rest.missing_square - rest.rim.missing_inside[0])
+            + of_thin_rims(&area, plastic.as_ref());
         let area = ContactArea { missing_square, ..area };
         let flow = plastic.map_or(0.0, |edges| edges.contact.mean_gap);
         let bars = plastic.map(|edges| edges.contact.with_wider_bars(area));
@@ -117,21 +120,26 @@ const PRESSURE_OF_SOLVE: f64 = 1.0;
 const GAP_OF_SOLVE: f64 = 0.5;
 
 /// 95 % error of the squared pressure at one independent edge. The mean over few edges scatters.
-const SQUARE_SCATTER: f64 = 0.5;
+const SQUARE_SCATTER: f64 = 0.41;
 
-/// 95 % error of [`ContactArea::missing_square`], relative to it.
-const ERROR_OF_SQUARES: f64 = 2.5;
-
-/// 95 % error of ⟨p²⟩ inside contacts that the kernel's elements cause.
+/// 95 % errors of the parts of [`ContactArea::missing_square`], relative to them.
 ///
-/// It is relative to ⟨p²⟩, to the kernel's constant, and to the ratio of elements at edges to elements in contact.
-const SQUARE_INSIDE: f64 = 0.2;
+/// They are the parts of edges, of elements in lone rows, as a multiple of their squares, and of thin rims.
+const ERROR_OF_SQUARES: f64 = 0.6;
+const ERROR_OF_LONE: f64 = 0.8;
+const ERROR_OF_THIN_RIMS: f64 = 0.5;
 
-/// Error of ⟨p²⟩ from larger elements, which keep only their mean pressures.
+/// Part of [`Rim::thin_rims`] that ⟨p²⟩ misses, as a linear function of the plastic part of the contact.
 ///
-/// With p = k √d at the distance d from an edge, an element of side s at d = 2s has the variance s k²/96. Its row along
-/// the edges is 2s wide. The elements at edges have k² times half their area.
-const SQUARE_OF_LARGER: f64 = 1.0 / 24.0;
+/// Where almost all of the contact is plastic, the pressure of an element in a rim is a part of the hardness on a part of
+/// the element.
+const OF_THIN_RIMS: [f64; 2] = [0.3, 0.6];
+
+/// Part of ⟨p²⟩ that elements in thin elastic rims miss.
+fn of_thin_rims(area: &ContactArea, plastic: Option<&PlasticEdges>) -> f64 {
+    let of_contact = plastic.map_or(0.0, |edges| per_contact_area(edges.contact.fraction, area));
+    (OF_THIN_RIMS[0] + OF_THIN_RIMS[1] * of_contact.clamp(0.0, 1.0)) * area.rim.thin_rims
+}
 
 /// Ratio of the error of the rms pressure in full contact to its last change.
 ///
@@ -149,29 +157,19 @@ fn rms_pressure_error(
         return None;
     }
     let rest = rest.filter(|rest| rest.perimeter_edges > 0);
-    if area.perimeter_edges == 0 && rest.is_none() {
+    if area.perimeter_edges == 0 && rest.is_none() && area.rim.missing_inside[0] == 0.0 {
         return info.coarser.map(|coarser| OF_CHANGE * (rms_pressure - coarser.rms_pressure).abs());
     }
-    let of_rest = rest.map_or(0.0, |rest| error_of_squares(rest, rms_pressure));
-    Some(0.5 * error_of_squares(area, rms_pressure).hypot(of_rest) / rms_pressure)
+    let of_rest = rest.map_or(0.0, |rest| error_of_squares(&rest.rim));
+    Some(0.5 * error_of_squares(&area.rim).hypot(of_rest).hypot(area.rim.missing_inside[1]) / rms_pressure)
 }
 
-/// Estimated error of ⟨p²⟩.
-fn error_of_squares(area: &ContactArea, rms_pressure: f64) -> f64 {
-    let (rim, squares) = (area.rim, rms_pressure * rms_pressure);
-    let scatter = SQUARE_SCATTER * rim.squares / rim.independent_edges.max(1.0).sqrt();
-    let larger = SQUARE_OF_LARGER * rim.squares * rim.larger;
-    let inside = SQUARE_INSIDE * rim.kernel * squares * per_contact_area(rim.area, area);
-    scatter.hypot(ERROR_OF_SQUARES * area.missing_square).hypot(inside).hypot(larger)
+/// Estimated error of ⟨p²⟩ at edges.
+fn error_of_squares(rim: &Rim) -> f64 {
+    let scatter = SQUARE_SCATTER * rim.typical_squares / rim.independent_edges.max(1.0).sqrt();
+    let (edges, lone) = (ERROR_OF_SQUARES * rim.per_square * rim.squares, ERROR_OF_LONE * rim.lone_squares);
+    scatter.hypot(edges).hypot(lone).hypot(ERROR_OF_THIN_RIMS * rim.thin_rims)
 }
-
-/// 95 % errors of the mean gap, from scatter and from the kernel.
-///
-/// The scatter is over few edges. The part from the kernel is relative to the kernel's constant. Both are multiples of
-/// ⟨p²⟩ times the side of an element over the mean pressure, times the ratio of elements at edges to elements in
-/// contact.
-const GAP_SCATTER: f64 = 0.1;
-const GAP_OF_KERNEL: f64 = 0.48;
 
 /// Ratio of the 95 % error of the mean gap to that of the area. It matters for contacts that are few and light.
 const GAP_OVER_AREA: f64 = 0.025;
@@ -181,15 +179,22 @@ const GAP_OVER_AREA: f64 = 0.025;
 /// Its unit is the ratio of `Rim::at_border` to the mean pressure. The measured values are in docs/constants.md.
 const GAP_AT_BORDER: f64 = 0.7;
 
-/// Estimated error of the mean gap. It is 0 in full contact of a periodic cell and without contact.
+/// Estimated error of the mean gap. It is 0 without contact.
 fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {
-    let (rim, mean_gap) = (area.rim, info.mean_gap());
-    let of_element = rim.side * rms_pressure * rms_pressure / info.mean_pressure.max(f64::MIN_POSITIVE);
-    let at_edges = of_element * per_contact_area(rim.area, area);
-    let scatter = GAP_SCATTER / rim.independent_edges.max(1.0).sqrt();
-    let of_edges = at_edges * scatter.hypot(GAP_OF_KERNEL * rim.kernel);
-    let of_border = GAP_AT_BORDER * rim.at_border / info.mean_pressure.max(f64::MIN_POSITIVE);
-    of_edges.hypot(GAP_OVER_AREA * area.relative_error() * mean_gap).hypot(of_border)
+    let (rim, mean_pressure) = (area.rim, info.mean_pressure.max(f64::MIN_POSITIVE));
+    let of_element = rim.side * rms_pressure * rms_pressure / mean_pressure;
+    let [common, scatter] = rim.gap_errors;
+    let scatter = common.hypot(scatter / rim.independent_edges.max(1.0).sqrt());
+    let parts = [
+        of_element * per_contact_area(rim.area, area) * scatter,
+        rim.scatter_of_sharp,
+        rim.hidden_gap,
+        GAP_OVER_AREA * area.relative_error() * info.mean_gap(),
+        GAP_AT_BORDER * rim.at_border / mean_pressure,
+        // The overlap that the certificate has found.
+        info.certificate.penetration * info.penetration_full_contact,
+    ];
+    parts.into_iter().fold(0.0, f64::hypot)
 }
 
 /// `value` relative to the contact area, and 0 without contact.

@@ -75,15 +75,14 @@ impl Values<'_> {
         let Self { mesh, pressure, contact_gap, hardness, .. } = *self;
         let (side, tiles) = (mesh.side(coarser), &mesh.levels()[coarser]);
         let is_free = tiles.boundary() == Boundary::Free;
-        let of_tile = |(tile, &place): (usize, &[u32; 2])| {
+        let add_tile = |sums: &mut EdgeSums, tile: usize, place: [u32; 2]| {
             let start = values.start + tile * CELLS;
             if pressure[start..start + CELLS].iter().all(|&p| seen([p, 0.0])[0] <= 0.0) {
-                return EdgeSums::default();
+                return;
             }
             let pressure = pressures.elements.around(&pressures.values, coarser, place, 0.0);
             // Where there is no element, the gap is not known.
             let gap = gaps.elements.around(&gaps.values, coarser, place, f64::NAN);
-            let mut sums = EdgeSums::default();
             // Cells beyond the grid are across the seam.
             let [width, height] = tiles.inside(place);
             let patch = Inside::of(tiles, place);
@@ -100,20 +99,21 @@ impl Values<'_> {
                     }
                 }
             }
-            sums
         };
         let chunks = places.par_chunks(TILES_AT_ONCE).enumerate();
         let chunks: Vec<EdgeSums> = chunks
             .map(|(chunk, places)| {
-                let tiles = places.iter().enumerate();
-                let sums = tiles.map(|(tile, place)| of_tile((chunk * TILES_AT_ONCE + tile, place)));
-                sums.fold(EdgeSums::default(), |a, b| a + b)
+                let mut sums = EdgeSums::default();
+                for (tile, &place) in places.iter().enumerate() {
+                    add_tile(&mut sums, chunk * TILES_AT_ONCE + tile, place);
+                }
+                sums
             })
             .collect();
         let total = self.mesh.ranks().fold(EdgeSums::default().to_values(), |sum| {
-            chunks.into_iter().fold(EdgeSums::from_values(sum), |a, b| a + b).to_values()
+            chunks.into_iter().fold(EdgeSums::from_values(&sum), |a, b| a + b).to_values()
         });
-        EdgeSums::from_values(total)
+        EdgeSums::from_values(&total)
     }
 }
 

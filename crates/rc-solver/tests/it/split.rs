@@ -16,12 +16,13 @@ struct Fork<'a> {
     own: &'a dyn Kernel,
     factor: f64,
     split: Option<&'a dyn SplitByScale>,
-    bias: EdgeBias,
+    /// The shift of edges, if it is not that of the original.
+    bias: Option<EdgeBias>,
 }
 
 impl<'a> Fork<'a> {
     fn of(own: &'a dyn Kernel) -> Self {
-        Self { own, factor: 1.0, split: own.split(), bias: own.edge_bias() }
+        Self { own, factor: 1.0, split: own.split(), bias: None }
     }
 }
 
@@ -40,8 +41,8 @@ impl Kernel for Fork<'_> {
         Some(Box::new(move |ix, iy| self.factor * own(ix, iy)))
     }
 
-    fn edge_bias(&self) -> EdgeBias {
-        self.bias
+    fn edge_bias(&self, grid: Grid) -> EdgeBias {
+        self.bias.unwrap_or_else(|| self.own.edge_bias(grid))
     }
 
     fn split(&self) -> Option<&dyn SplitByScale> {
@@ -162,8 +163,8 @@ fn a_kernel_of_a_fork_has_the_digits_of_its_original() {
         assert_eq!((found.pressure(), found.gap()), (expected.pressure(), expected.gap()));
         assert_eq!(found.stiffness().to_bits(), expected.stiffness().to_bits());
         // The shift of edges is that of the kernel.
-        let bias = EdgeBias { per_edge: 0.1, ..own.edge_bias() };
-        let shifted = Fork { bias, ..fork };
+        let bias = EdgeBias { per_edge: 0.1, ..own.edge_bias(heights.grid()) };
+        let shifted = Fork { bias: Some(bias), ..fork };
         let shifted = solve(&heights, &shifted, None).expect("solvable");
         assert_eq!(shifted.pressure(), expected.pressure());
         assert!(shifted.area().fraction < expected.area().fraction);

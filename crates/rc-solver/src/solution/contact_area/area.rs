@@ -30,64 +30,107 @@ pub struct ContactArea {
     pub gap_deviation: f64,
     /// Part of ⟨p²⟩ that the mean over elements misses, in E*².
     ///
-    /// See [`EdgeBias::per_square`].
+    /// It is the sum of the parts at edges ([`EdgeBias::per_square`]) and inside contacts
+    /// ([`EdgeBias::per_difference`]), and of a part of elastic rims that are thinner than an element.
     pub missing_square: f64,
     /// Best estimate of the area, from the edges between the centres of elements.
     pub fraction: f64,
     /// Estimated error of `fraction`. The true error is smaller in 95 % of scenes.
     ///
-    /// `cargo xtask accuracy` measures this. The estimate comes from the number of edges, their directions, and the
-    /// difference to the count. It does not cover slopes that jump, see `docs/accuracy.md`.
+    /// `cargo xtask accuracy` measures this. The estimate comes from the number of edges that differ, their directions,
+    /// gaps beside them and places that elements may hide. It does not cover slopes that jump, see `docs/accuracy.md`.
     pub error: f64,
     /// Sums at edges for the error bars of pressure and gap.
     pub(crate) rim: Rim,
 }
 
-/// Sums over the elements at the edges of contacts.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Sums over the elements of contacts for error bars of pressure and gap. Areas are relative to the nominal area.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Rim {
-    /// Σ over edges of the area of an element, relative to the nominal area.
+    /// Σ over edges of the area of an element.
     pub(crate) area: f64,
-    /// Σ over edges of an element's area times the squared pressure inside, in E*².
-    ///
-    /// The area is relative to the nominal area.
+    /// Σ over smooth edges of an element's area times the squared pressure inside, in E*².
     pub(crate) squares: f64,
+    /// The same squares in the mean over positions of the edges between elements, at least [`Rim::squares`].
+    pub(crate) typical_squares: f64,
+    /// The same over elements without a neighbour in contact along an axis.
+    pub(crate) lone_squares: f64,
+    /// Σ over elements in thin elastic rims of their area times p (H - p), in E*².
+    pub(crate) thin_rims: f64,
+    /// Part of [`ContactArea::missing_square`] inside contacts, and its 95 % error.
+    pub(crate) missing_inside: [f64; 2],
+    /// Size of [`EdgeBias::per_square`].
+    pub(crate) per_square: f64,
+    /// [`EdgeBias::gap_errors`].
+    pub(crate) gap_errors: [f64; 2],
+    /// 95 % error of the mean gap from places that elements may hide, in λ.
+    pub(crate) hidden_gap: f64,
     /// Number of edges that scatter independently.
     ///
-    /// Edges in a row with the same place between elements count as one.
+    /// Edges in a row with the same place between elements count as one, and so do those of identical asperities.
     pub(crate) independent_edges: f64,
-    /// Σ of (side / smallest side)² over the sizes of larger elements in contact.
-    pub(crate) larger: f64,
+    /// 95 % error of the penetration from the scatter of sharp edges, in λ.
+    pub(crate) scatter_of_sharp: f64,
     /// Side of the smallest elements, in λ.
     pub(crate) side: f64,
-    /// Size of [`EdgeBias::per_square`]: the difference of the kernel's elements to the half-space at edges.
-    pub(crate) kernel: f64,
     /// Squared pressure at free borders, in E*² λ.
     ///
     /// It is the sum of p² a s over elements along a border, with their area a and their side s across the border. The
-    /// area is relative to the nominal area. The sum is zero where contact does not reach a free border.
+    /// sum is zero where contact does not reach a free border.
     pub(crate) at_border: f64,
 }
 
 /// 95 % error of the area, in elements, for one independent edge.
 ///
 /// It grows with the root of the number of independent edges, and is the same on every mesh.
-const SCATTER: f64 = 0.17;
+const SCATTER: f64 = 0.165;
+
+/// 95 % error of the bias, in elements, for each unit of [`ContactArea::gap_deviation`].
+///
+/// Gaps deviate where the mesh is coarse for the curvature of edges and for the distance between contacts.
+const ERROR_OF_DEVIATION: f64 = 0.018;
 
 /// 95 % error of the bias, relative to (count - `fraction`)² / `fraction`.
 ///
-/// It is of second order. In scenes with very many edges it is the error.
-const ERROR_OF_TERM: f64 = 0.4;
+/// It is of second order.
+const ERROR_OF_TERM: f64 = 0.2;
 
 /// 95 % error for each diagonal above or below the expected number [`DIAGONALS`].
 ///
 /// The bias is subtracted as for edges in all directions.
-const ERROR_OF_DIRECTIONS: f64 = 0.15;
+const ERROR_OF_DIRECTIONS: f64 = 0.1;
+
+/// 95 % error, in elements, for each element that may hide a place out of contact.
+const ERROR_OF_HIDDEN: f64 = 0.8;
 
 /// Neighbours across a corner for each edge, in the mean over the directions of edges.
 ///
 /// There are two where an edge is along the elements, and one where it is at 45 degrees to them.
 const DIAGONALS: f64 = SQRT_2;
+
+/// 95 % error of the penetration from sharp edges, in steps of the heights from element to element.
+///
+/// It is the error for one independent edge, and that of a height at a random place between two heights is uniform over
+/// their step.
+const SCATTER_OF_SHARP: f64 = 0.6;
+
+/// Shift of the area by the singular pressure at a free border, and its 95 % error.
+///
+/// Elements make the patch narrower, so that the contact is pressed deeper ([`Rim::at_border`]). Their unit is the
+/// change of the area with this depth ([`ContactArea::per_depth`]).
+const SHIFT_AT_BORDER: [f64; 2] = [0.3, 0.5];
+
+/// 95 % error of the missing squares inside contacts from waves that the mesh hardly resolves.
+///
+/// It is relative to [`EdgeBias::per_difference`]. The ratio of squared second differences to squared differences is at
+/// most 1.5 for waves of four elements and longer.
+const ERROR_OF_SHORT_WAVES: f64 = 1.2;
+const LONGEST_SHORT_WAVE: f64 = 1.5;
+
+/// Part of the squares of lone elements that they miss.
+///
+/// It is a mean over contacts of 0.3 to 0.8 elements in radius.
+const OF_LONE_SQUARES: f64 = 0.25;
 
 /// 95 % error of the area from the tolerance of the solve.
 ///
@@ -139,23 +182,15 @@ impl ContactArea {
     /// The smallest elements, those of the grid `finest`, come first. Then come those twice as large, and so on.
     pub(crate) fn from_sums(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> Self {
         let (area, scatter) = Self::with_scatter(sums, finest, bias);
-        let error = scatter.error(area.cells - area.fraction, area.fraction.max(0.1 * area.cells));
-        Self { error, ..area }
+        let mean_pressure = size_of_elements(finest, sums).map(|(size, sums)| size * sums.pressure).sum();
+        let [shift, error] = SHIFT_AT_BORDER.map(|part| part * area.change_by_border(mean_pressure));
+        let error = scatter.error(area.cells - area.fraction, area.fraction.max(0.1 * area.cells)).hypot(error);
+        Self { fraction: (area.fraction - shift).max(0.0), error: error.min(1.0), ..area }
     }
 
     /// The area without its error, and the data that the error follows from.
     pub(crate) fn with_scatter(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> (Self, Scatter) {
-        let (smallest, sides) = (1.0 / finest.len() as f64, finest.spacing().into());
-        let [width, height]: [f64; 2] = sides;
-        let rim = Rim {
-            area: 0.0,
-            squares: 0.0,
-            independent_edges: 0.0,
-            larger: 0.0,
-            side: (width * height).sqrt(),
-            kernel: bias.per_square.abs(),
-            at_border: 0.0,
-        };
+        let sides: [f64; 2] = finest.spacing().into();
         let mut area = Self {
             cells: 0.0,
             perimeter_edges: 0,
@@ -165,11 +200,10 @@ impl ContactArea {
             missing_square: 0.0,
             fraction: 0.0,
             error: 0.0,
-            rim,
+            rim: Rim { side: (sides[0] * sides[1]).sqrt(), ..Rim::of(sums, finest, bias) },
         };
-        let (mut scatter, mut excess_diagonals) = (0.0, 0.0);
-        for (coarser, sums) in sums.iter().enumerate() {
-            let size = smallest * f64::from(1_u32 << (2 * coarser));
+        let mut scatter = Scatter::default();
+        for (coarser, (size, sums)) in size_of_elements(finest, sums).enumerate() {
             let (edges, contacts) = (sums.edges as f64, 0.25 * sums.turns as f64);
             let counted = sums.n_contact as f64;
             let [shift, deviation] = sums.of_all();
@@ -179,24 +213,37 @@ impl ContactArea {
                 0.5 * shift - bias.per_edge * smooth - bias.per_contact * of_contacts - bias.per_deviation * deviation;
             area.cells += size * counted;
             area.fraction += size * (counted + shift);
-            let together = edges_that_scatter_together(sums);
-            scatter += (SCATTER * size).powi(2) * edges * together;
-            area.rim.independent_edges += edges / together;
-            excess_diagonals += size * (sums.diagonals as f64 - DIAGONALS * edges);
             area.euler_number += contacts;
             area.gap_deviation += deviation;
-            area.missing_square += size * bias.per_square * sums.squares;
-            area.rim.area += size * edges;
-            area.rim.squares += size * sums.squares;
-            area.rim.at_border += size * sums.at_border;
-            if coarser > 0 && sums.n_contact > 0 {
-                area.rim.larger += f64::from(1_u32 << (2 * coarser));
-            }
             area.perimeter_edges += sums.edges << coarser;
             area.perimeter += length(sums, sides.map(|side| side * f64::from(1_u32 << coarser)));
+            scatter.add(size, sums, [deviation, bias.per_edge_error * smooth]);
         }
+        let rim = &area.rim;
+        area.missing_square =
+            bias.per_square * rim.squares + OF_LONE_SQUARES * rim.lone_squares + rim.missing_inside[0];
         area.fraction = area.fraction.clamp(0.0, 1.0);
-        (area, Scatter { of_edges: scatter.sqrt(), of_directions: ERROR_OF_DIRECTIONS * excess_diagonals })
+        (area, scatter)
+    }
+
+    /// Change of the area with the depth of the contact, dA/dΔ, in 1/λ. It is 0 without edges.
+    ///
+    /// Round contacts of the radius a with the pressure c √s at the distance s from their edge. A stamp of this radius
+    /// has E* dΔ/(π √(2 a s)), so the edge moves by 2 E* dΔ/(π c √(2 a)).
+    fn per_depth(&self) -> f64 {
+        let Rim { area, squares, side, .. } = self.rim;
+        if squares == 0.0 || self.fraction == 0.0 {
+            return 0.0;
+        }
+        // On average, the last element of a contact is half an element from the edge.
+        let c = (2.0 * squares / (area * side)).sqrt();
+        let radius = 2.0 * self.fraction / self.perimeter;
+        2.0 * self.perimeter / (PI * c * (2.0 * radius).sqrt())
+    }
+
+    /// Unit of [`SHIFT_AT_BORDER`].
+    fn change_by_border(&self, mean_pressure: f64) -> f64 {
+        if self.rim.at_border > 0.0 { self.rim.at_border / mean_pressure * self.per_depth() } else { 0.0 }
     }
 
     /// Adds the error that the tolerance of the solve leaves.
@@ -249,31 +296,88 @@ fn add_borders(sums: &mut EdgeSums, pressure: &Field, hardness: f64) {
     }
 }
 
+/// Area of the elements of each of the sums, relative to the nominal area.
+fn size_of_elements(finest: Grid, sums: &[EdgeSums]) -> impl Iterator<Item = (f64, &EdgeSums)> {
+    let smallest = 1.0 / finest.len() as f64;
+    sums.iter().enumerate().map(move |(coarser, sums)| (smallest * f64::from(1_u32 << (2 * coarser)), sums))
+}
+
+impl Rim {
+    /// All but [`Rim::side`].
+    fn of(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> Self {
+        let mut rim = Self { per_square: bias.per_square.abs(), gap_errors: bias.gap_errors, ..Self::default() };
+        let (mut sharp, mut step) = (0.0, [0.0; 2]);
+        let side = finest.spacing().x;
+        for (size, sums) in size_of_elements(finest, sums) {
+            let (edges, together) = (sums.edges as f64, edges_that_scatter_together(sums));
+            rim.area += size * edges;
+            rim.squares += size * sums.squares;
+            // Where p² is linear, that of the second element is on average three times that of the first.
+            rim.typical_squares += size * sums.squares.max(sums.next_squares / 3.0);
+            rim.lone_squares += size * sums.lone_squares;
+            rim.hidden_gap += size * side * sums.hidden_rises;
+            rim.thin_rims += size * sums.thin_rims;
+            rim.missing_inside[0] +=
+                size * (bias.per_difference * sums.differences + bias.per_second_difference * sums.second_differences);
+            let of_short_waves = (sums.second_differences - LONGEST_SHORT_WAVE * sums.differences).max(0.0);
+            rim.missing_inside[1] += size
+                * (bias.per_difference_error * sums.differences
+                    + ERROR_OF_SHORT_WAVES * bias.per_difference.abs() * of_short_waves);
+            rim.independent_edges += edges / together;
+            rim.at_border += size * sums.at_border;
+            sharp += size.powi(2) * sums.sharp as f64 * together;
+            step = [step[0] + size * sums.steps, step[1] + size * sums.known_sharp as f64];
+        }
+        if step[1] > 0.0 {
+            rim.scatter_of_sharp = SCATTER_OF_SHARP * sharp.sqrt() / rim.area * step[0] / step[1];
+        }
+        rim
+    }
+}
+
 /// The data that the error of an area follows from.
+#[derive(Default)]
 pub(crate) struct Scatter {
-    of_edges: f64,
-    of_directions: f64,
+    /// Sum of squared errors of independent edges.
+    edges: f64,
+    /// Errors that are common to all edges, each as a sum.
+    deviation: f64,
+    bias: f64,
+    directions: f64,
+    hidden: f64,
 }
 
 impl Scatter {
+    /// Adds elements of one size with these sums of the deviation and of the error of the bias.
+    fn add(&mut self, size: f64, sums: &EdgeSums, [deviation, bias]: [f64; 2]) {
+        let edges = sums.edges as f64;
+        self.edges += (SCATTER * size).powi(2) * edges * edges_that_scatter_together(sums);
+        self.deviation += ERROR_OF_DEVIATION * size * deviation;
+        self.bias += size * bias;
+        self.directions += ERROR_OF_DIRECTIONS * size * (sums.diagonals as f64 - DIAGONALS * edges);
+        self.hidden += ERROR_OF_HIDDEN * size * sums.hidden as f64;
+    }
+
     /// The error of an area that differs from the count by `term`.
     ///
     /// Contacts of single elements may have no area at all. `size` is therefore not only the area. It is at least a
     /// part of the count.
     pub(crate) fn error(&self, term: f64, size: f64) -> f64 {
         let of_term = ERROR_OF_TERM * term.powi(2) / size.max(f64::MIN_POSITIVE);
-        self.of_edges.hypot(of_term).hypot(self.of_directions).min(1.0)
+        let common = [self.deviation, self.bias, self.directions, self.hidden];
+        common.into_iter().fold(self.edges.sqrt().hypot(of_term), f64::hypot).min(1.0)
     }
 }
 
-/// Number of edges in a row with about the same place between elements.
+/// Number of edges with about the same place between elements.
 ///
-/// It is 1 for edges in all directions. For edges along the elements it is the number of all edges. An edge has two
-/// diagonals if its neighbour along the contact is in the same row or column, and one at a step.
+/// They are edges in a row, or edges of identical asperities ([`EdgeSums::copies`]). It is 1 for edges in all
+/// directions. For edges along the elements it is the number of all edges. An edge has two diagonals if its neighbour
+/// along the contact is in the same row or column, and one at a step.
 fn edges_that_scatter_together(sums: &EdgeSums) -> f64 {
     let edges = sums.edges.max(1) as f64;
     let steps = (2.0 - sums.diagonals as f64 / edges).max(f64::MIN_POSITIVE);
-    ((2.0 - DIAGONALS) / steps).min(edges).max(1.0)
+    ((2.0 - DIAGONALS) / steps).max(sums.copies()).min(edges).max(1.0)
 }
 
 /// Length of all edges of elements with these sides.
@@ -319,10 +423,10 @@ mod tests {
 
     /// Sums of the edge of a half plane, in a cell of 64 elements.
     ///
-    /// The edge has this slope against the rows.
+    /// The edge has this slope against the rows. Its positions between elements are not known.
     fn sums_of_edge(slope: f64) -> EdgeSums {
         let mut sums = EdgeSums::default();
-        let at = |x: isize, y: isize| if (y as f64) < slope * x as f64 + 0.5 { [1.0, 0.0] } else { [0.0, 1.0] };
+        let at = |x: isize, y: isize| if (y as f64) < slope * x as f64 + 0.5 { [1.0, 0.0] } else { [0.0, f64::NAN] };
         for x in 0..64 {
             for y in -2..66 {
                 if at(x, y)[0] > 0.0 {

@@ -7,8 +7,17 @@ use crate::solution::contact_area::edge::Edge;
 /// The eight neighbours of an element, in order around it.
 const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
 
+/// Number of parts of the distance between two elements in which edges are counted.
+const N_POSITIONS: usize = 128;
+
+/// Number of other values of [`EdgeSums`].
+const N_VALUES: usize = 23;
+
+/// The values of [`EdgeSums`] as ranks exchange them.
+pub(crate) type Values = [f64; N_VALUES + N_POSITIONS];
+
 /// Sums over elements of one size.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EdgeSums {
     /// Number of elements in contact.
     pub(crate) n_contact: usize,
@@ -37,14 +46,44 @@ pub(crate) struct EdgeSums {
     ///
     /// The gap grows in proportion to the distance from a sharp edge, and so does the overlap on the other side.
     pub(crate) shift_of_sharp: f64,
-    /// Σ p² of the elements inside, over all edges that are not sharp.
+    /// Σ of overlap inside and gap outside, over sharp edges with a known gap, in λ.
+    pub(crate) steps: f64,
+    /// Σ p of the elements.
+    pub(crate) pressure: f64,
+    /// Σ p² of the elements inside, over all edges that are not sharp, without [`EdgeSums::thin_rims`].
     pub(crate) squares: f64,
+    /// Σ p² of the second elements inside, over the same edges.
+    pub(crate) next_squares: f64,
+    /// Σ p² of elements without a neighbour in contact along an axis, for each such axis.
+    pub(crate) lone_squares: f64,
+    /// Σ p (H - p) of elements between one that is plastic and one out of contact, for the hardness H.
+    ///
+    /// The elastic rim there is thinner than an element.
+    pub(crate) thin_rims: f64,
+    /// Σ of the squared differences of pressure between neighbours that are both in contact.
+    pub(crate) differences: f64,
+    /// Σ of the squared second differences of pressure over three elements in a line, all in contact.
+    pub(crate) second_differences: f64,
+    /// Number of elements inside the contact that may hide a place out of contact.
+    ///
+    /// The pressure is minimum there, and less than it rises within half an element.
+    pub(crate) hidden: usize,
+    /// Σ of these rises of the pressure.
+    pub(crate) hidden_rises: f64,
     /// Corners where one of the four elements is in contact, minus those where three are.
     ///
     /// It is four times the number of contacts minus the number of their holes.
     pub(crate) turns: isize,
     /// Σ p² s over the sides of elements along free borders, with the side s across the border, in E*² λ.
     pub(crate) at_border: f64,
+    /// Number of located edges by their position between the centres of two elements.
+    positions: [u32; N_POSITIONS],
+}
+
+impl Default for EdgeSums {
+    fn default() -> Self {
+        Self::from_values(&[0.0; N_VALUES + N_POSITIONS])
+    }
 }
 
 impl EdgeSums {
@@ -54,11 +93,20 @@ impl EdgeSums {
     /// `sides` are the sides of the element.
     pub(crate) fn add(&mut self, sides: [f64; 2], hardness: f64, at: &impl Fn(isize, isize) -> [f64; 2]) {
         self.n_contact += 1;
-        let free = AROUND.map(|[dx, dy]| at(dx, dy)[0] <= 0.0);
+        let pressure = at(0, 0)[0];
+        self.pressure += pressure;
+        let around = AROUND.map(|[dx, dy]| at(dx, dy)[0]);
+        let beside = [[around[3], around[4]], [around[1], around[6]]];
+        self.add_inside(pressure, hardness, beside);
+        let free = around.map(|p| p <= 0.0);
         if free == [false; 8] {
             return;
         }
-        let [pressure, overlap] = at(0, 0);
+        let any_beside = |is: fn(f64, f64) -> bool| beside.as_flattened().iter().any(|&p| is(p, hardness));
+        let is_thin_rim = pressure < hardness && any_beside(|p, _| p <= 0.0) && any_beside(|p, hardness| p >= hardness);
+        if is_thin_rim {
+            self.thin_rims += pressure * (hardness - pressure);
+        }
         for ([dx, dy], _) in AROUND.into_iter().zip(free).filter(|&(_, free)| free) {
             if dx != 0 && dy != 0 {
                 self.diagonals += 1;
@@ -66,22 +114,45 @@ impl EdgeSums {
             }
             self.edges += 1;
             self.along_x += usize::from(dy == 0);
-            let side = if dy == 0 { sides[0] } else { sides[1] };
             if pressure >= hardness {
-                self.add_sharp(overlap, at(dx, dy)[1]);
+                self.add_sharp(at(0, 0)[1], at(dx, dy)[1]);
                 continue;
             }
-            self.squares += pressure * pressure;
-            let gap_ratio = |steps: isize| at(steps * dx, steps * dy)[1] / (pressure * side);
-            if let Some(edge) = Edge::new(gap_ratio(1)) {
-                self.shift += edge.position() - 0.5;
-                self.known[0] += 1;
-                if let Some(deviation) = edge.deviation(gap_ratio(2)) {
-                    self.known[1] += 1;
-                    self.deviation += deviation;
+            if !is_thin_rim {
+                self.squares += pressure * pressure;
+                self.next_squares += at(-dx, -dy)[0].powi(2);
+            }
+            let side = if dy == 0 { sides[0] } else { sides[1] };
+            self.add_smooth([1, 2].map(|steps| at(steps * dx, steps * dy)[1] / (pressure * side)));
+        }
+        self.add_turns(at);
+    }
+
+    /// Adds the differences of pressure to the neighbours, which lie before and behind along both axes.
+    fn add_inside(&mut self, pressure: f64, hardness: f64, beside: [[f64; 2]; 2]) {
+        let mut curvatures = [0.0; 2];
+        for ([before, behind], curvature) in beside.into_iter().zip(&mut curvatures) {
+            if behind > 0.0 {
+                self.differences += (behind - pressure).powi(2);
+                if before > 0.0 {
+                    let second = before - 2.0 * pressure + behind;
+                    self.second_differences += second.powi(2);
+                    *curvature = if before.min(behind) >= pressure { second } else { 0.0 };
                 }
+            } else if before <= 0.0 && pressure < hardness {
+                self.lone_squares += pressure * pressure;
             }
         }
+        // Half an element from the minimum, the pressure is higher by an eighth of the second difference.
+        let rise = 0.25 * (curvatures[0] * curvatures[1]).sqrt();
+        if pressure < rise {
+            self.hidden += 1;
+            self.hidden_rises += rise;
+        }
+    }
+
+    /// Adds the corners of an element.
+    fn add_turns(&mut self, at: &impl Fn(isize, isize) -> [f64; 2]) {
         let in_contact = |dx: isize, dy: isize| at(dx, dy)[0] > 0.0;
         for [x, y] in [[-1, -1], [0, -1], [-1, 0], [0, 0]] {
             let corner = [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]];
@@ -95,47 +166,89 @@ impl EdgeSums {
             }
         }
     }
-}
 
-impl EdgeSums {
+    /// Adds an edge whose next two gaps outside have these ratios to the pressure ([`Edge::new`]).
+    fn add_smooth(&mut self, [next, second]: [f64; 2]) {
+        let Some(edge) = Edge::new(next) else { return };
+        self.shift += edge.position() - 0.5;
+        self.known[0] += 1;
+        self.add_position(edge.position());
+        if let Some(deviation) = edge.deviation(second) {
+            self.known[1] += 1;
+            self.deviation += deviation;
+        }
+    }
+
+    /// Adds the edge between a plastic element and a neighbour out of contact.
+    ///
+    /// `inside` and `outside` are their gaps. A negative gap is an overlap.
+    fn add_sharp(&mut self, inside: f64, outside: f64) {
+        self.sharp += 1;
+        if outside.is_nan() {
+            return;
+        }
+        let (overlap, gap) = ((-inside).max(0.0), outside.max(0.0));
+        let position = if overlap + gap > 0.0 { overlap / (overlap + gap) } else { 0.5 };
+        self.shift_of_sharp += position - 0.5;
+        self.steps += overlap + gap;
+        self.known_sharp += 1;
+        self.add_position(position);
+    }
+
+    /// Counts an edge at a position between the centres of two elements, from 0 to 1.
+    fn add_position(&mut self, position: f64) {
+        self.positions[((position * N_POSITIONS as f64) as usize).min(N_POSITIONS - 1)] += 1;
+    }
+
     /// The sums as ranks exchange them. Counts are exact.
-    pub(crate) fn to_values(self) -> [f64; 14] {
-        let Self { n_contact, edges, along_x, diagonals, known, shift, deviation, squares, turns, .. } = self;
-        let Self { sharp, known_sharp, shift_of_sharp, at_border, .. } = self;
-        let [n_contact, edges, along_x, diagonals] = [n_contact, edges, along_x, diagonals].map(|n| n as f64);
-        let [first, second, sharp, known_sharp] = [known[0], known[1], sharp, known_sharp].map(|n| n as f64);
-        let counts = [n_contact, edges, along_x, diagonals, first, second, sharp, known_sharp, turns as f64];
-        let mut values = [0.0; 14];
-        values[..9].copy_from_slice(&counts);
-        values[9..].copy_from_slice(&[shift, deviation, squares, shift_of_sharp, at_border]);
-        values
+    pub(crate) fn to_values(self) -> Values {
+        let Self { n_contact, edges, along_x, diagonals, known, sharp, known_sharp, hidden, turns, positions, .. } =
+            self;
+        let Self { shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares, .. } = self;
+        let Self { next_squares, thin_rims, differences, second_differences, hidden_rises, at_border, .. } = self;
+        let counts = [n_contact, edges, along_x, diagonals, known[0], known[1], sharp, known_sharp, hidden];
+        let sums = [shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares];
+        let more_sums = [next_squares, thin_rims, differences, second_differences, hidden_rises, at_border];
+        let counts = counts.into_iter().map(|n| n as f64).chain([turns as f64]);
+        let mut values = counts.chain(sums).chain(more_sums).chain(positions.map(f64::from));
+        std::array::from_fn(|_| values.next().unwrap_or_default())
     }
 
     /// The sums from [`EdgeSums::to_values`].
-    pub(crate) fn from_values(values: [f64; 14]) -> Self {
-        let [n_contact, edges, along_x, diagonals, first, second, sharp, known_sharp] =
+    pub(crate) fn from_values(values: &Values) -> Self {
+        let [n_contact, edges, along_x, diagonals, first, second, sharp, known_sharp, hidden] =
             std::array::from_fn(|i| values[i] as usize);
-        let (known, turns) = ([first, second], values[8] as isize);
-        let [shift, deviation, squares, shift_of_sharp, at_border] = std::array::from_fn(|i| values[9 + i]);
+        let [shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares] =
+            std::array::from_fn(|i| values[10 + i]);
+        let [next_squares, thin_rims, differences, second_differences, hidden_rises, at_border] =
+            std::array::from_fn(|i| values[17 + i]);
         Self {
             n_contact,
             edges,
             along_x,
             diagonals,
-            known,
+            known: [first, second],
             shift,
             deviation,
             sharp,
             known_sharp,
             shift_of_sharp,
+            steps,
+            pressure,
             squares,
-            turns,
+            next_squares,
+            lone_squares,
+            thin_rims,
+            differences,
+            second_differences,
+            hidden,
+            hidden_rises,
+            turns: values[9] as isize,
             at_border,
+            positions: std::array::from_fn(|i| values[N_VALUES + i] as u32),
         }
     }
-}
 
-impl EdgeSums {
     /// Adds the pressure of an element that may be along a free border.
     ///
     /// The element is at `place` of a grid of `extent` elements, and has the sides `sides`. Plastic elements are left
@@ -156,20 +269,6 @@ impl EdgeSums {
         }
     }
 
-    /// Adds the edge between a plastic element and a neighbour out of contact.
-    ///
-    /// `inside` and `outside` are their gaps. A negative gap is an overlap.
-    fn add_sharp(&mut self, inside: f64, outside: f64) {
-        self.sharp += 1;
-        if outside.is_nan() {
-            return;
-        }
-        let (overlap, gap) = ((-inside).max(0.0), outside.max(0.0));
-        let position = if overlap + gap > 0.0 { overlap / (overlap + gap) } else { 0.5 };
-        self.shift_of_sharp += position - 0.5;
-        self.known_sharp += 1;
-    }
-
     /// Shift and deviation, summed over all edges.
     ///
     /// Where they are not known, they are the mean of the other edges of their kind.
@@ -183,6 +282,20 @@ impl EdgeSums {
         [shift + of_sharp, all(self.deviation, self.smooth(), self.known[1])]
     }
 
+    /// Number of edges with about the same position between elements, in the mean over edges.
+    ///
+    /// The positions of independent edges fill the distance between two elements evenly. Copies of an asperity at a
+    /// pitch of whole elements have the same positions. If each occurs k times, the counts c of edges in small parts of
+    /// the distance have Σ (c_i² - c_i c_{i+1}) = k n for n edges. About one neighbour along an edge is in the same part
+    /// in any case.
+    pub(crate) fn copies(&self) -> f64 {
+        let counts = self.positions.map(f64::from);
+        let n = counts.iter().sum::<f64>();
+        let alike = counts.windows(2).map(|pair| pair[0] * (pair[0] - pair[1])).sum::<f64>();
+        let last = counts[N_POSITIONS - 1].powi(2);
+        if n > 0.0 { (alike + last) / n - 1.0 } else { 0.0 }
+    }
+
     /// Number of edges that are not sharp.
     pub(crate) fn smooth(&self) -> usize {
         self.edges - self.sharp
@@ -193,21 +306,8 @@ impl Add for EdgeSums {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        Self {
-            n_contact: self.n_contact + other.n_contact,
-            edges: self.edges + other.edges,
-            along_x: self.along_x + other.along_x,
-            diagonals: self.diagonals + other.diagonals,
-            known: [self.known[0] + other.known[0], self.known[1] + other.known[1]],
-            shift: self.shift + other.shift,
-            deviation: self.deviation + other.deviation,
-            sharp: self.sharp + other.sharp,
-            known_sharp: self.known_sharp + other.known_sharp,
-            shift_of_sharp: self.shift_of_sharp + other.shift_of_sharp,
-            squares: self.squares + other.squares,
-            turns: self.turns + other.turns,
-            at_border: self.at_border + other.at_border,
-        }
+        let (a, b) = (self.to_values(), other.to_values());
+        Self::from_values(&std::array::from_fn(|i| a[i] + b[i]))
     }
 }
 
@@ -231,5 +331,38 @@ mod tests {
             assert_eq!((sums.sharp, sums.known_sharp), (1, 1));
             assert!((sums.shift_of_sharp - (position - 0.5)).abs() < 1e-12, "{position}: {sums:?}");
         }
+    }
+
+    /// Edges at irregular positions, each a number of times.
+    #[test]
+    fn copies_of_edges_are_counted() {
+        for (n, copies) in [(400, 1), (400, 16), (30, 64)] {
+            let mut sums = EdgeSums::default();
+            for i in 0..n {
+                let position = (f64::from(i * i) * 0.618_033_988_749_895).fract();
+                (0..copies).for_each(|_| sums.add_position(position));
+            }
+            let (found, expected) = (sums.copies() + 1.0, f64::from(copies));
+            assert!((found / expected - 1.0).abs() < 0.5, "{n} x {copies}: {found}");
+        }
+        assert!(EdgeSums::default().copies().abs() < 1e-12);
+    }
+
+    /// The pressure between two contacts of full contact is a parabola. Its minimum is between two centres.
+    #[test]
+    fn a_minimum_below_half_an_element_may_hide_a_place_out_of_contact() {
+        let hidden = |least: f64| {
+            let at = |x: isize, y: isize| [least + 0.5 * ((x as f64 - 0.4).powi(2) + (y as f64).powi(2)), 0.0];
+            let mut sums = EdgeSums::default();
+            EdgeSums::add(&mut sums, [1.0; 2], f64::INFINITY, &at);
+            sums.hidden
+        };
+        assert_eq!([0.01, 0.1, 0.3].map(hidden), [1, 1, 0]);
+    }
+
+    #[test]
+    fn ranks_exchange_all_sums() {
+        let values: Values = std::array::from_fn(|i| i as f64);
+        assert_eq!(EdgeSums::from_values(&values).to_values(), values);
     }
 }
