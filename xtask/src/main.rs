@@ -1,5 +1,6 @@
 //! The task runner: `cargo xtask <command>`, one file per command.
 
+mod accuracy;
 mod bench;
 mod challenge;
 mod ci;
@@ -18,7 +19,6 @@ mod tidy;
 mod wheel;
 
 use clap::{CommandFactory as _, Parser, Subcommand};
-use rc_bench::accuracy;
 use rc_figures::{Fig1, Fig2, Fig3, Fig4, Fig5, Fig6, Fig7, Fig8, Statements};
 
 /// Tests, checks, figures and benchmarks of rc. Needs nothing but cargo.
@@ -57,8 +57,7 @@ enum Command {
     Reproduction(figures::ReproductionArgs),
     Gfmd(gfmd::Args),
     Challenge(challenge::Args),
-    /// Measures how often the error bars of area, rms pressure and mean gap hold
-    Accuracy(figures::Args),
+    Accuracy(accuracy::Args),
     Bench(bench::Args),
     Mpi(mpi::Args),
     Slurm(slurm::Args),
@@ -88,7 +87,7 @@ fn main() -> anyhow::Result<()> {
         Command::Reproduction(args) => figures::run_reproduction(&args),
         Command::Gfmd(args) => gfmd::run(&args),
         Command::Challenge(args) => challenge::run(&args),
-        Command::Accuracy(args) => accuracy::run(args.preset(), &args.out),
+        Command::Accuracy(args) => accuracy::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Mpi(args) => mpi::run(&args),
         Command::Slurm(args) => slurm::run(&args),

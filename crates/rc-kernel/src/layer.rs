@@ -146,7 +146,7 @@ impl Kernel for LoveLayer {
         let (shift, springs) = (0.105 * (-1.43 * thickness).exp(), (-thickness / 2.2).exp());
         EdgeBias {
             per_edge: half_space.per_edge + shift,
-            per_edge_error: half_space.per_edge_error + 0.5 * shift,
+            per_edge_error: half_space.per_edge_error + 0.5 * shift + 0.012 * (-thickness / 4.0).exp(),
             per_difference: half_space.per_difference + 0.12 * springs,
             per_second_difference: half_space.per_second_difference - 0.08 * springs,
             per_difference_error: half_space.per_difference_error + 0.09 * (-thickness / 3.0).exp(),

@@ -93,15 +93,20 @@ const ERROR_OF_DEVIATION: f64 = 0.018;
 /// 95 % error of the bias, relative to (count - `fraction`)² / `fraction`.
 ///
 /// It is of second order.
-const ERROR_OF_TERM: f64 = 0.2;
+const ERROR_OF_TERM: f64 = 0.25;
 
 /// 95 % error for each diagonal above or below the expected number [`DIAGONALS`].
 ///
 /// The bias is subtracted as for edges in all directions.
 const ERROR_OF_DIRECTIONS: f64 = 0.1;
 
+/// 95 % error of the bias, in elements, for each edge of elements that are not squares.
+///
+/// Its unit is the logarithm of the ratio of their sides.
+const ERROR_OF_OBLONG: f64 = 0.04;
+
 /// 95 % error, in elements, for each element that may hide a place out of contact.
-const ERROR_OF_HIDDEN: f64 = 0.8;
+const ERROR_OF_HIDDEN: f64 = 1.0;
 
 /// Neighbours across a corner for each edge, in the mean over the directions of edges.
 ///
@@ -217,7 +222,8 @@ impl ContactArea {
             area.gap_deviation += deviation;
             area.perimeter_edges += sums.edges << coarser;
             area.perimeter += length(sums, sides.map(|side| side * f64::from(1_u32 << coarser)));
-            scatter.add(size, sums, [deviation, bias.per_edge_error * smooth]);
+            let of_bias = bias.per_edge_error.hypot(ERROR_OF_OBLONG * (sides[0] / sides[1]).ln());
+            scatter.add(size, sums, [deviation, of_bias * smooth]);
         }
         let rim = &area.rim;
         area.missing_square =
@@ -377,7 +383,9 @@ impl Scatter {
 fn edges_that_scatter_together(sums: &EdgeSums) -> f64 {
     let edges = sums.edges.max(1) as f64;
     let steps = (2.0 - sums.diagonals as f64 / edges).max(f64::MIN_POSITIVE);
-    ((2.0 - DIAGONALS) / steps).max(sums.copies()).min(edges).max(1.0)
+    // Long edges of a small slope are correlated over more than one step.
+    let in_rows = ((2.0 - DIAGONALS) / steps).max(1.0).powf(1.5);
+    in_rows.max(sums.copies()).min(edges).max(1.0)
 }
 
 /// Length of all edges of elements with these sides.
