@@ -94,7 +94,9 @@ mod tests {
         let families = vec![Family::Rough.name().to_owned()];
         let scenes = measure(&Choice { seed: 3, scenes: 12, families }).expect("solvable scenes");
         for spectral in [false, true] {
-            let of_kernel = |scene: &&Measured| scene.is_spectral == spectral && scene.limits[0] < 0.95;
+            // Contacts of a few elements, and pools of a few elements, have relative errors of their own.
+            let is_meant = |scene: &&Measured| scene.elements_per_wave >= 8 && (0.01..0.95).contains(&scene.limits[0]);
+            let of_kernel = |scene: &&Measured| is_meant(scene) && scene.is_spectral == spectral;
             let [located, counted] = strata::rms_errors_of_area(scenes.iter().filter(of_kernel));
             assert!(located < 0.2 * counted, "spectral {spectral}: {located} located, {counted} counted");
         }
