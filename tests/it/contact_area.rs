@@ -22,7 +22,7 @@ fn paraboloid(n: usize, [a, b]: [f64; 2], (x0, y0): (f64, f64), angle: f64) -> F
 /// Relative error of the estimate, relative error of the count, and the estimate's bar.
 fn errors(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, exact: f64) -> [f64; 3] {
     let solution = solved(heights, kernel, Control::MeanPressure(mean_pressure), 1e-8);
-    let area = ContactArea::of(solution.pressure(), solution.gap(), kernel.edge_bias());
+    let area = ContactArea::of(solution.pressure(), solution.gap(), kernel.edge_bias(solution.grid()));
     [area.fraction / exact - 1.0, area.cells / exact - 1.0, area.relative_error()]
 }
 
