@@ -18,7 +18,7 @@ const SQUARE_LATTICE: f64 = -3.900264920001956;
 
 /// Radii of circles that have the areas of the spots.
 fn radii(pressure: &Field, gap: &Field) -> Vec<f64> {
-    let spots = ContactSpot::all(pressure, gap, Love.edge_bias());
+    let spots = ContactSpot::all(pressure, gap, Love.edge_bias(pressure.grid()));
     spots.iter().map(|spot| (spot.area_fraction / PI).sqrt()).collect()
 }
 

@@ -22,18 +22,19 @@ fn paraboloid(n: usize, [a, b]: [f64; 2], (x0, y0): (f64, f64), angle: f64) -> F
 /// Relative error of the estimate, relative error of the count, and the estimate's bar.
 fn errors(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, exact: f64) -> [f64; 3] {
     let solution = solved(heights, kernel, Control::MeanPressure(mean_pressure), 1e-8);
-    let area = ContactArea::of(solution.pressure(), solution.gap(), kernel.edge_bias());
+    let area = ContactArea::of(solution.pressure(), solution.gap(), kernel.edge_bias(solution.grid()));
     [area.fraction / exact - 1.0, area.cells / exact - 1.0, area.relative_error()]
 }
 
 /// Errors of the areas of circles are within the bars, or slightly above them.
 ///
 /// Bars hold for 95 of 100 contacts, so a single contact may exceed its bar. The first place is a corner of elements,
-/// around which the eight octants of the circle are alike. Only an eighth of the edges is independent there, and the
-/// scatter is √8 times larger.
+/// around which the eight octants of the circle are alike. The bar knows that only an eighth of the edges is
+/// independent there.
 #[test]
 fn circles_are_found_within_their_bars_and_better_than_by_counting() {
     let theory = PeriodicHertz { radius: 1.0 };
+    let (mut held, mut all) = (0, 0);
     // The contacts have 5, 10 and 26 elements per radius, at several places between the elements.
     for radius in [0.02, 0.04, 0.1] {
         let contact = theory.at_contact_radius(radius).expect("small contact");
@@ -44,14 +45,16 @@ fn circles_are_found_within_their_bars_and_better_than_by_counting() {
                 let at = |step: f64| (step * f64::from(place)).fract() / 256.0;
                 let heights = paraboloid(256, [0.5; 2], (at(0.618), at(0.414)), 0.0);
                 let [found, counted, bar] = errors(&heights, kernel, contact.load, exact);
-                let bars = if place == 0 { 8.0_f64.sqrt() } else { 1.5 };
+                let bars = if place == 0 { 1.0 } else { 1.6 };
                 assert!(found.abs() < bars * bar, "{} of {radius}: {found:e}, bar {bar:e}", kernel.name());
+                (held, all) = (held + usize::from(found.abs() <= bar), all + 1);
                 squares[0] += found * found;
                 squares[1] += counted * counted;
             }
             assert!(squares[0] < 0.25 * squares[1], "{} of {radius}: {squares:?} in all", kernel.name());
         }
     }
+    assert!(10 * held >= 9 * all, "{held} of {all} bars hold");
 }
 
 #[test]

@@ -39,7 +39,7 @@ fn assert_spots_are_the_contact<'a>(heights: impl Into<HeightSource<'a>>, mean_p
     let overlap = solution.plastic_gap();
     let gap = solution.gap().values().iter().zip(overlap.values()).map(|(gap, overlap)| gap - overlap).collect();
     let gap = Field::new(solution.grid(), gap).expect("a field");
-    let (bias, area) = (way.kernel.edge_bias(), solution.area().fraction);
+    let (bias, area) = (way.kernel.edge_bias(solution.grid()), solution.area().fraction);
     let spots = ContactSpot::with_area([solution.pressure(), &gap], solution.hardness(), bias, boundary, area);
     let sum = |of: fn(&ContactSpot) -> f64| spots.iter().map(of).sum::<f64>();
     assert!(spots.iter().all(|spot| spot.area_fraction > 0.0 && spot.mean_pressure > 0.0), "{spots:?}");

@@ -231,8 +231,8 @@ fn spots_are_not_joined_across_borders() {
     let grid = Grid::square(32).expect("a grid");
     let at_corners = |at: DVec2| if at.x.min(1.0 - at.x) < 0.1 && at.y.min(1.0 - at.y) < 0.1 { 1.0 } else { 0.0 };
     let (pressure, gap) = (Field::from_fn(grid, at_corners), Field::zeros(grid));
-    assert_eq!(ContactSpot::all(&pressure, &gap, Love.edge_bias()).len(), 1);
-    assert_eq!(ContactSpot::with_boundary(&pressure, &gap, Love.edge_bias(), Boundary::Free).len(), 4);
+    assert_eq!(ContactSpot::all(&pressure, &gap, Love.edge_bias(grid)).len(), 1);
+    assert_eq!(ContactSpot::with_boundary(&pressure, &gap, Love.edge_bias(grid), Boundary::Free).len(), 4);
 }
 
 #[test]

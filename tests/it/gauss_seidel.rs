@@ -17,7 +17,7 @@ fn by_the_paper(heights: &Field, control: Control, tolerance: f64) -> Solution<'
 
 /// Contact area of the adaptive solution, with edges located on the finest grid.
 fn contact_area(solution: &Solution<'_>) -> f64 {
-    ContactArea::of(solution.pressure(), solution.gap(), Love.edge_bias()).fraction
+    ContactArea::of(solution.pressure(), solution.gap(), Love.edge_bias(solution.grid())).fraction
 }
 
 #[test]

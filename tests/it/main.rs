@@ -7,6 +7,7 @@ mod bisinusoidal;
 mod conductance;
 mod contact_area;
 mod contact_spots;
+mod error_bars;
 mod examples;
 mod free;
 mod free_adaptive;

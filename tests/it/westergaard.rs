@@ -101,7 +101,7 @@ fn error_falls_with_the_grid() {
         // to a fourth or less.
         assert!(errors[3] < 0.25 * errors[0], "{}: {errors:?}", kernel.name());
         let solution = solved(&wave(512, true), kernel, Control::MeanPressure(mean_pressure), 1e-9);
-        let area = ContactArea::of(solution.pressure(), solution.gap(), kernel.edge_bias());
+        let area = ContactArea::of(solution.pressure(), solution.gap(), kernel.edge_bias(solution.grid()));
         assert!((area.cells - theory.area_fraction(mean_pressure)).abs() <= 2.0 / 512.0, "{area:?}");
     }
 }
