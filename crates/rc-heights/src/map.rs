@@ -168,19 +168,17 @@ impl BorderStep {
     #[must_use]
     pub fn of(heights: &Field) -> Self {
         let (nx, ny) = (heights.grid().nx(), heights.grid().ny());
-        let mut sums = [(0.0, 0_usize); 2];
-        let mut add = |at_border: bool, a: f64, b: f64| {
-            let sum = &mut sums[usize::from(!at_border)];
-            *sum = (sum.0 + (a - b) * (a - b), sum.1 + 1);
-        };
+        let square = |a: f64, b: f64| (a - b) * (a - b);
+        let (mut border, mut inside) = (0.0, 0.0);
         for iy in 0..ny {
             let (row, next) = (heights.row(iy), heights.row((iy + 1) % ny));
-            for ix in 0..nx {
-                add(ix + 1 == nx, row[ix], row[(ix + 1) % nx]);
-                add(iy + 1 == ny, row[ix], next[ix]);
-            }
+            inside += row.iter().zip(&row[1..]).map(|(&a, &b)| square(a, b)).sum::<f64>();
+            border += square(row[nx - 1], row[0]);
+            let along_y = row.iter().zip(next).map(|(&a, &b)| square(a, b)).sum::<f64>();
+            *(if iy + 1 == ny { &mut border } else { &mut inside }) += along_y;
         }
-        let [border, inside] = sums.map(|(sum, n)| if n > 0 { (sum / n as f64).sqrt() } else { 0.0 });
+        let rms = |sum: f64, n: usize| if n > 0 { (sum / n as f64).sqrt() } else { 0.0 };
+        let (border, inside) = (rms(border, nx + ny), rms(inside, (nx - 1) * ny + nx * (ny - 1)));
         Self { border, inside }
     }
 

@@ -125,7 +125,9 @@ impl Prepared {
         let named = named.as_ref().map(|kernel| &**kernel as &dyn Kernel);
         let chosen = own.or(named).expect("a kernel is the caller's or has a name");
         let problem = scene.problem(&surface, chosen, budget);
-        refuse(&problem.warnings(), is_strict, "; nothing was solved")?;
+        if is_strict {
+            refuse(&problem.warnings(), true, "; nothing was solved")?;
+        }
         let solved = scene.solve(problem, started, observer)?;
         let SolvedParts { solution, failure, flow, warnings, wall } = solved.into_parts();
         let solution = solution.into_owned();
@@ -134,7 +136,11 @@ impl Prepared {
         let waves = surface.wave_file().cloned();
         let contact = scene.contact;
         let failure = failure.map(|failure| failure.to_string());
-        Ok(Parts { surface: surface.keys, waves, contact, solution, failure, flow, warnings, wall, height_and_slope })
+        let surface = surface.keys;
+        let all_warnings = Vec::new();
+        let parts =
+            Parts { surface, waves, contact, solution, failure, flow, warnings, all_warnings, wall, height_and_slope };
+        Ok(parts.with_all_warnings())
     }
 }
 

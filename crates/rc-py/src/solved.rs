@@ -32,6 +32,8 @@ pub(crate) struct Parts {
     pub(crate) flow: Option<SolvedFlow>,
     /// The warnings that were known before the solve.
     pub(crate) warnings: Vec<Warning>,
+    /// Codes and texts of all warnings of the summary. They are needed at once, and the summary takes longer.
+    pub(crate) all_warnings: Vec<(&'static str, String)>,
     pub(crate) wall: Duration,
     /// Rms height (λ) and rms slope.
     pub(crate) height_and_slope: [f64; 2],
@@ -65,10 +67,22 @@ struct Found {
     summary: OnceLock<Summary>,
 }
 
+impl Parts {
+    fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
+        let Self { surface, waves, contact, solution, flow, warnings, .. } = self;
+        ResultFiles { surface, map, waves: waves.as_deref(), contact, solution, flow: flow.as_ref(), warnings }
+    }
+
+    pub(crate) fn with_all_warnings(mut self) -> Self {
+        let all = self.files(None).all_warnings();
+        self.all_warnings = all.into_iter().map(|warning| (warning.code.name(), warning.text)).collect();
+        self
+    }
+}
+
 impl Found {
     fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
-        let Parts { surface, waves, contact, solution, flow, warnings, .. } = &self.parts;
-        ResultFiles { surface, map, waves: waves.as_deref(), contact, solution, flow: flow.as_ref(), warnings }
+        self.parts.files(map)
     }
 
     fn summary(&self) -> &Summary {
@@ -139,12 +153,9 @@ impl Solved {
         self.found.parts.wall.as_secs_f64()
     }
 
-    /// Codes and texts of the warnings of the summary, without the time that a summary takes.
-    fn warnings(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, String)>> {
-        self.compute(py, |found| {
-            let warnings = found.files(None).all_warnings();
-            warnings.into_iter().map(|warning| (warning.code.name(), warning.text)).collect()
-        })
+    /// Codes and texts of the warnings of the summary.
+    fn warnings(&self) -> Vec<(&'static str, String)> {
+        self.found.parts.all_warnings.clone()
     }
 
     /// The summary as JSON.

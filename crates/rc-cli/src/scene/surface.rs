@@ -4,7 +4,7 @@
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use rc_core::quantity::digits;
 use rc_core::{Boundary, Field, Grid, HeightSource, PeriodicCell};
@@ -87,6 +87,8 @@ pub struct LoadedSurface {
     pub warnings: Vec<Warning>,
     /// What the reader did, one line each.
     pub notes: Vec<String>,
+    /// rms height (λ) and rms slope of a map, with periodic and with free borders, after their first use.
+    of_map: [OnceLock<[f64; 2]>; 2],
 }
 
 /// A surface as a sum of waves, or as a map.
@@ -218,7 +220,7 @@ impl SurfaceSetup {
             ..self.keys.clone()
         };
         let shape = Shape::Map { heights: Arc::new(heights), as_read };
-        Ok(LoadedSurface { shape, grid, keys, warnings, notes })
+        Ok(LoadedSurface { shape, grid, keys, warnings, notes, of_map: Default::default() })
     }
 }
 
@@ -236,7 +238,7 @@ impl Shape {
 impl LoadedSurface {
     /// A surface of waves.
     fn of_waves(shape: Shape, grid: Grid, keys: SurfaceKeys) -> Self {
-        Self { shape, grid, keys, warnings: Vec::new(), notes: Vec::new() }
+        Self { shape, grid, keys, warnings: Vec::new(), notes: Vec::new(), of_map: Default::default() }
     }
 
     /// Heights on the finest grid, in λ.
@@ -278,8 +280,8 @@ impl LoadedSurface {
                 let Moments { rms_height, rms_slope, .. } = waves.moments();
                 [rms_height, rms_slope]
             }
-            Err(map) if boundary == Boundary::Free => height_and_slope_of_patch(map),
-            Err(map) => height_and_slope_of_grid(map),
+            Err(map) if boundary == Boundary::Free => *self.of_map[1].get_or_init(|| height_and_slope_of_patch(map)),
+            Err(map) => *self.of_map[0].get_or_init(|| height_and_slope_of_grid(map)),
         }
     }
 
