@@ -52,7 +52,7 @@ pub struct EdgeBias {
     pub per_square: f64,
     /// Term added to Σ p² for each two neighbours in contact. Its unit is the square of their difference of pressure.
     ///
-    /// In full contact, the squared amplitude of a wave q has the factor (L/L∞)² for the kernel's symbol L and that of
+    /// In full contact, the squared amplitude of a wave q has the factor (L∞/L)² for the kernel's symbol L and that of
     /// the solid, L∞. On elements of the side h, Love's squares have L/L∞ = 1 - (q h)²/24 + …, and p² is too large by
     /// h² ⟨|∇p|²⟩/12. A kernel that is exact for long waves has 0 here.
     pub per_difference: f64,
