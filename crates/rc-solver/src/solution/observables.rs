@@ -120,25 +120,29 @@ const PRESSURE_OF_SOLVE: f64 = 1.0;
 const GAP_OF_SOLVE: f64 = 0.5;
 
 /// 95 % error of the squared pressure at one independent edge. The mean over few edges scatters.
-const SQUARE_SCATTER: f64 = 0.41;
+const SQUARE_SCATTER: f64 = 0.39;
 
 /// 95 % errors of the parts of [`ContactArea::missing_square`], relative to them.
 ///
 /// They are the parts of edges, of elements in lone rows, as a multiple of their squares, and of thin rims.
 const ERROR_OF_SQUARES: f64 = 0.6;
 const ERROR_OF_LONE: f64 = 0.8;
-const ERROR_OF_THIN_RIMS: f64 = 0.5;
+const ERROR_OF_THIN_RIMS: f64 = 0.2;
 
-/// Part of [`Rim::thin_rims`] that ⟨p²⟩ misses, as a linear function of the plastic part of the contact.
+/// 95 % error of [`Rim::thin_rims`] in units of [`Rim::scatter_of_thin`].
+const SCATTER_OF_THIN: f64 = 1.4;
+
+/// Part of [`Rim::thin_rims`] that ⟨p²⟩ misses if all edges are thin and almost all of the contact is plastic.
 ///
-/// Where almost all of the contact is plastic, the pressure of an element in a rim is a part of the hardness on a part of
-/// the element.
-const OF_THIN_RIMS: [f64; 2] = [0.3, 0.6];
+/// The pressure of an element in such a rim is a part of the hardness on a part of the element. Where the mesh resolves
+/// most rims, the last element of a rim is an edge like others.
+const OF_THIN_RIMS: f64 = 0.85;
 
 /// Part of ⟨p²⟩ that elements in thin elastic rims miss.
 fn of_thin_rims(area: &ContactArea, plastic: Option<&PlasticEdges>) -> f64 {
     let of_contact = plastic.map_or(0.0, |edges| per_contact_area(edges.contact.fraction, area));
-    (OF_THIN_RIMS[0] + OF_THIN_RIMS[1] * of_contact.clamp(0.0, 1.0)) * area.rim.thin_rims
+    let part = of_contact.clamp(0.0, 1.0) * area.rim.part_of_thin;
+    OF_THIN_RIMS * part.powf(1.5) * area.rim.thin_rims
 }
 
 /// Ratio of the error of the rms pressure in full contact to its last change.
@@ -160,15 +164,17 @@ fn rms_pressure_error(
     if area.perimeter_edges == 0 && rest.is_none() && area.rim.missing_inside[0] == 0.0 {
         return info.coarser.map(|coarser| OF_CHANGE * (rms_pressure - coarser.rms_pressure).abs());
     }
-    let of_rest = rest.map_or(0.0, |rest| error_of_squares(&rest.rim));
-    Some(0.5 * error_of_squares(&area.rim).hypot(of_rest).hypot(area.rim.missing_inside[1]) / rms_pressure)
+    let (rim, of_rest) = (&area.rim, rest.map_or(0.0, |rest| error_of_squares(&rest.rim)));
+    let of_thin_rims = (ERROR_OF_THIN_RIMS * rim.thin_rims).hypot(SCATTER_OF_THIN * rim.scatter_of_thin);
+    let parts = [error_of_squares(rim), of_rest, of_thin_rims, rim.missing_inside[1]];
+    Some(0.5 * parts.into_iter().fold(0.0, f64::hypot) / rms_pressure)
 }
 
-/// Estimated error of ⟨p²⟩ at edges.
+/// Estimated error of ⟨p²⟩ at edges, but for thin rims.
 fn error_of_squares(rim: &Rim) -> f64 {
     let scatter = SQUARE_SCATTER * rim.typical_squares / rim.independent_edges.max(1.0).sqrt();
     let (edges, lone) = (ERROR_OF_SQUARES * rim.per_square * rim.squares, ERROR_OF_LONE * rim.lone_squares);
-    scatter.hypot(edges).hypot(lone).hypot(ERROR_OF_THIN_RIMS * rim.thin_rims)
+    scatter.hypot(edges).hypot(lone)
 }
 
 /// Ratio of the 95 % error of the mean gap to that of the area. It matters for contacts that are few and light.

@@ -57,6 +57,10 @@ pub(crate) struct Rim {
     pub(crate) lone_squares: f64,
     /// Σ over elements in thin elastic rims of their area times p (H - p), in E*².
     pub(crate) thin_rims: f64,
+    /// Scatter of [`Rim::thin_rims`]: the root of the sum of the squares of its terms.
+    pub(crate) scatter_of_thin: f64,
+    /// Part of the edges that belong to plastic elements or to thin elastic rims.
+    pub(crate) part_of_thin: f64,
     /// Part of [`ContactArea::missing_square`] inside contacts, and its 95 % error.
     pub(crate) missing_inside: [f64; 2],
     /// Size of [`EdgeBias::per_square`].
@@ -117,7 +121,7 @@ const DIAGONALS: f64 = SQRT_2;
 ///
 /// It is the error for one independent edge, and that of a height at a random place between two heights is uniform over
 /// their step.
-const SCATTER_OF_SHARP: f64 = 0.6;
+const SCATTER_OF_SHARP: f64 = 0.5;
 
 /// Shift of the area by the singular pressure at a free border, and its 95 % error.
 ///
@@ -312,7 +316,7 @@ impl Rim {
     /// All but [`Rim::side`].
     fn of(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> Self {
         let mut rim = Self { per_square: bias.per_square.abs(), gap_errors: bias.gap_errors, ..Self::default() };
-        let (mut sharp, mut step) = (0.0, [0.0; 2]);
+        let (mut sharp, mut thin, mut scatter_of_thin, mut step) = (0.0, 0.0, 0.0_f64, [0.0; 2]);
         let side = finest.spacing().x;
         for (size, sums) in size_of_elements(finest, sums) {
             let (edges, together) = (sums.edges as f64, edges_that_scatter_together(sums));
@@ -323,6 +327,8 @@ impl Rim {
             rim.lone_squares += size * sums.lone_squares;
             rim.hidden_gap += size * side * sums.hidden_rises;
             rim.thin_rims += size * sums.thin_rims;
+            scatter_of_thin += size.powi(2) * sums.thin_rims_squared * together;
+            thin += size * (sums.sharp + sums.thin) as f64;
             rim.missing_inside[0] +=
                 size * (bias.per_difference * sums.differences + bias.per_second_difference * sums.second_differences);
             let of_short_waves = (sums.second_differences - LONGEST_SHORT_WAVE * sums.differences).max(0.0);
@@ -334,6 +340,8 @@ impl Rim {
             sharp += size.powi(2) * sums.sharp as f64 * together;
             step = [step[0] + size * sums.steps, step[1] + size * sums.known_sharp as f64];
         }
+        rim.scatter_of_thin = scatter_of_thin.sqrt();
+        rim.part_of_thin = if rim.area > 0.0 { thin / rim.area } else { 0.0 };
         if step[1] > 0.0 {
             rim.scatter_of_sharp = SCATTER_OF_SHARP * sharp.sqrt() / rim.area * step[0] / step[1];
         }

@@ -11,7 +11,7 @@ const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-
 const N_POSITIONS: usize = 128;
 
 /// Number of other values of [`EdgeSums`].
-const N_VALUES: usize = 23;
+const N_VALUES: usize = 25;
 
 /// The values of [`EdgeSums`] as ranks exchange them.
 pub(crate) type Values = [f64; N_VALUES + N_POSITIONS];
@@ -42,6 +42,8 @@ pub(crate) struct EdgeSums {
     pub(crate) sharp: usize,
     /// Number of sharp edges where the gap beside the contact is known.
     pub(crate) known_sharp: usize,
+    /// Number of edges of elements in [`EdgeSums::thin_rims`].
+    pub(crate) thin: usize,
     /// Σ (s - ½) over sharp edges with a known gap.
     ///
     /// The gap grows in proportion to the distance from a sharp edge, and so does the overlap on the other side.
@@ -60,9 +62,11 @@ pub(crate) struct EdgeSums {
     ///
     /// The elastic rim there is thinner than an element.
     pub(crate) thin_rims: f64,
-    /// Σ of the squared differences of pressure between neighbours that are both in contact.
+    /// Σ of the squares of the terms of [`EdgeSums::thin_rims`].
+    pub(crate) thin_rims_squared: f64,
+    /// Σ of the squared differences of pressure between neighbours that are both in elastic contact.
     pub(crate) differences: f64,
-    /// Σ of the squared second differences of pressure over three elements in a line, all in contact.
+    /// Σ of the squared second differences of pressure over three elements in a line, all in elastic contact.
     pub(crate) second_differences: f64,
     /// Number of elements inside the contact that may hide a place out of contact.
     ///
@@ -105,7 +109,9 @@ impl EdgeSums {
         let any_beside = |is: fn(f64, f64) -> bool| beside.as_flattened().iter().any(|&p| is(p, hardness));
         let is_thin_rim = pressure < hardness && any_beside(|p, _| p <= 0.0) && any_beside(|p, hardness| p >= hardness);
         if is_thin_rim {
-            self.thin_rims += pressure * (hardness - pressure);
+            let term = pressure * (hardness - pressure);
+            self.thin_rims += term;
+            self.thin_rims_squared += term * term;
         }
         for ([dx, dy], _) in AROUND.into_iter().zip(free).filter(|&(_, free)| free) {
             if dx != 0 && dy != 0 {
@@ -118,7 +124,9 @@ impl EdgeSums {
                 self.add_sharp(at(0, 0)[1], at(dx, dy)[1]);
                 continue;
             }
-            if !is_thin_rim {
+            if is_thin_rim {
+                self.thin += 1;
+            } else {
                 self.squares += pressure * pressure;
                 self.next_squares += at(-dx, -dy)[0].powi(2);
             }
@@ -131,17 +139,20 @@ impl EdgeSums {
     /// Adds the differences of pressure to the neighbours, which lie before and behind along both axes.
     fn add_inside(&mut self, pressure: f64, hardness: f64, beside: [[f64; 2]; 2]) {
         let mut curvatures = [0.0; 2];
+        // A step to a plastic element is at the edge of the elastic part, as the step to a free element is.
+        let is_elastic = |p: f64| p > 0.0 && p < hardness;
         for ([before, behind], curvature) in beside.into_iter().zip(&mut curvatures) {
-            if behind > 0.0 {
+            let second = before - 2.0 * pressure + behind;
+            if is_elastic(pressure) && is_elastic(behind) {
                 self.differences += (behind - pressure).powi(2);
-                if before > 0.0 {
-                    let second = before - 2.0 * pressure + behind;
+                if is_elastic(before) {
                     self.second_differences += second.powi(2);
-                    *curvature = if before.min(behind) >= pressure { second } else { 0.0 };
                 }
-            } else if before <= 0.0 && pressure < hardness {
+            }
+            if behind <= 0.0 && before <= 0.0 && pressure < hardness {
                 self.lone_squares += pressure * pressure;
             }
+            *curvature = if before.min(behind) >= pressure { second } else { 0.0 };
         }
         // Half an element from the minimum, the pressure is higher by an eighth of the second difference.
         let rise = 0.25 * (curvatures[0] * curvatures[1]).sqrt();
@@ -205,26 +216,40 @@ impl EdgeSums {
 
     /// The sums as ranks exchange them. Counts are exact.
     pub(crate) fn to_values(self) -> Values {
-        let Self { n_contact, edges, along_x, diagonals, known, sharp, known_sharp, hidden, turns, positions, .. } =
-            self;
+        let Self {
+            n_contact,
+            edges,
+            along_x,
+            diagonals,
+            known,
+            sharp,
+            known_sharp,
+            thin,
+            hidden,
+            turns,
+            positions,
+            ..
+        } = self;
         let Self { shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares, .. } = self;
-        let Self { next_squares, thin_rims, differences, second_differences, hidden_rises, at_border, .. } = self;
-        let counts = [n_contact, edges, along_x, diagonals, known[0], known[1], sharp, known_sharp, hidden];
+        let Self { next_squares, thin_rims, thin_rims_squared, differences, second_differences, .. } = self;
+        let Self { hidden_rises, at_border, .. } = self;
+        let counts = [n_contact, edges, along_x, diagonals, known[0], known[1], sharp, known_sharp, thin, hidden];
         let sums = [shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares];
-        let more_sums = [next_squares, thin_rims, differences, second_differences, hidden_rises, at_border];
+        let of_pressures = [next_squares, thin_rims, thin_rims_squared, differences, second_differences];
         let counts = counts.into_iter().map(|n| n as f64).chain([turns as f64]);
-        let mut values = counts.chain(sums).chain(more_sums).chain(positions.map(f64::from));
+        let mut values =
+            counts.chain(sums).chain(of_pressures).chain([hidden_rises, at_border]).chain(positions.map(f64::from));
         std::array::from_fn(|_| values.next().unwrap_or_default())
     }
 
     /// The sums from [`EdgeSums::to_values`].
     pub(crate) fn from_values(values: &Values) -> Self {
-        let [n_contact, edges, along_x, diagonals, first, second, sharp, known_sharp, hidden] =
+        let [n_contact, edges, along_x, diagonals, first, second, sharp, known_sharp, thin, hidden] =
             std::array::from_fn(|i| values[i] as usize);
         let [shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares] =
-            std::array::from_fn(|i| values[10 + i]);
-        let [next_squares, thin_rims, differences, second_differences, hidden_rises, at_border] =
-            std::array::from_fn(|i| values[17 + i]);
+            std::array::from_fn(|i| values[11 + i]);
+        let [next_squares, thin_rims, thin_rims_squared, differences, second_differences, hidden_rises, at_border] =
+            std::array::from_fn(|i| values[18 + i]);
         Self {
             n_contact,
             edges,
@@ -235,6 +260,7 @@ impl EdgeSums {
             deviation,
             sharp,
             known_sharp,
+            thin,
             shift_of_sharp,
             steps,
             pressure,
@@ -242,11 +268,12 @@ impl EdgeSums {
             next_squares,
             lone_squares,
             thin_rims,
+            thin_rims_squared,
             differences,
             second_differences,
             hidden,
             hidden_rises,
-            turns: values[9] as isize,
+            turns: values[10] as isize,
             at_border,
             positions: std::array::from_fn(|i| values[N_VALUES + i] as u32),
         }

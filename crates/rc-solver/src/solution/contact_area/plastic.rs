@@ -30,7 +30,7 @@ pub struct PlasticContact {
 /// `WIDER_CONTACT` x² times that of an elastic contact. The bar of the plastic part is a linear function of x times its
 /// own. The elastic rim of a plastic contact may be thinner than an element. Its edges are then located less
 /// accurately. `docs/other-solids.md` has the measurements.
-const WIDER_CONTACT: f64 = 2.7;
+const WIDER_CONTACT: f64 = 1.8;
 const WIDER_PLASTIC: [f64; 2] = [1.2, 3.3];
 
 impl PlasticContact {
