@@ -28,9 +28,9 @@ fn errors(heights: &Field, kernel: &dyn Kernel, mean_pressure: f64, exact: f64) 
 
 /// Errors of the areas of circles are within the bars, or slightly above them.
 ///
-/// Bars hold for 95 of 100 contacts, so a single contact may exceed its bar. The first place is a corner of elements,
-/// around which the eight octants of the circle are alike. The bar knows that only an eighth of the edges is
-/// independent there.
+/// Bars hold for 95 of 100 contacts, and a single contact may exceed its bar. The worst of these 144 does so by a factor
+/// of 1.56. The first place is a corner of elements, around which the eight octants of the circle are alike. The bar
+/// knows that only an eighth of the edges is independent there.
 #[test]
 fn circles_are_found_within_their_bars_and_better_than_by_counting() {
     let theory = PeriodicHertz { radius: 1.0 };
@@ -41,7 +41,7 @@ fn circles_are_found_within_their_bars_and_better_than_by_counting() {
         let exact = std::f64::consts::PI * radius * radius;
         for kernel in [&Love as &dyn Kernel, &Spectral] {
             let mut squares = [0.0; 2];
-            for place in 0..6 {
+            for place in 0..24 {
                 let at = |step: f64| (step * f64::from(place)).fract() / 256.0;
                 let heights = paraboloid(256, [0.5; 2], (at(0.618), at(0.414)), 0.0);
                 let [found, counted, bar] = errors(&heights, kernel, contact.load, exact);
@@ -54,8 +54,7 @@ fn circles_are_found_within_their_bars_and_better_than_by_counting() {
             assert!(squares[0] < 0.25 * squares[1], "{} of {radius}: {squares:?} in all", kernel.name());
         }
     }
-    // The two kernels have about the same errors, so there are 18 contacts that differ.
-    assert!(5 * held >= 4 * all, "{held} of {all} bars hold");
+    assert!(20 * held >= 19 * all, "{held} of {all} bars hold");
 }
 
 #[test]
