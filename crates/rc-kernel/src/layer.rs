@@ -155,6 +155,10 @@ impl Kernel for LoveLayer {
         }
     }
 
+    fn half_space(&self) -> Option<&dyn Kernel> {
+        Some(&Love)
+    }
+
     fn uniform_displacement(&self) -> Option<f64> {
         Some(self.0.uniform_displacement())
     }
@@ -212,6 +216,10 @@ impl Kernel for SpectralLayer {
             0.0 => 0.0,
             waves => self.0.factor(TAU * waves * self.0.thickness) / (PI * waves),
         })
+    }
+
+    fn half_space(&self) -> Option<&dyn Kernel> {
+        Some(&Spectral)
     }
 
     fn uniform_displacement(&self) -> Option<f64> {

@@ -78,11 +78,11 @@ pub struct Summary {
     pub rms_pressure: f64,
     /// Best estimate of the rms pressure (Pa).
     ///
-    /// It is corrected for the error of ⟨p²⟩ at edges of contacts.
+    /// It is corrected for the error of ⟨p²⟩ at edges of contacts and inside them.
     pub rms_pressure_corrected: Option<f64>,
     /// Estimated discretisation error of `rms_pressure_corrected` (Pa).
     ///
-    /// It is null where contact reaches a free border, and in full contact without a coarser grid.
+    /// It is null where contact reaches a free border, and in full contact on one grid with the kernel `spectral`.
     pub rms_pressure_error: Option<f64>,
     /// Maximum pressure (Pa).
     pub max_pressure: f64,

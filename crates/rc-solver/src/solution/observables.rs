@@ -18,12 +18,13 @@ pub struct Observables {
     pub rms_pressure: f64,
     /// Root mean square pressure over the cell, corrected: the best estimate.
     ///
-    /// The correction adds the part of ⟨p²⟩ that elements at contact edges miss ([`ContactArea::missing_square`]).
+    /// The correction adds the part of ⟨p²⟩ that elements miss ([`ContactArea::missing_square`]): at contact edges,
+    /// inside contacts, and in elastic rims thinner than an element.
     pub rms_pressure_corrected: f64,
     /// Estimated discretisation error of `rms_pressure_corrected`.
     ///
-    /// `None` in full contact without a coarser level to compare with, and where contact reaches a free border. The rms
-    /// of the singular pressure there has no limit.
+    /// `None` where contact reaches a free border, because the rms of the singular pressure there has no limit. With a
+    /// kernel without an error inside contacts, it is `None` in full contact without a coarser level to compare with.
     pub rms_pressure_error: Option<f64>,
     /// Maximum pressure.
     pub max_pressure: f64,
@@ -76,7 +77,7 @@ impl Observables {
             area: bars.map_or(area, |(area, _)| area),
             rms_pressure,
             rms_pressure_corrected: corrected(rms_pressure, &area),
-            rms_pressure_error: rms_pressure_error(info, (&area, rest.as_ref()), rms_pressure),
+            rms_pressure_error: rms_pressure_error(info, (&area, rest.as_ref()), [rms_pressure, max_pressure]),
             max_pressure,
             mean_gap: info.mean_gap() + flow,
             mean_gap_error: mean_gap_error(info, &area, rms_pressure)
@@ -155,7 +156,7 @@ const OF_CHANGE: f64 = 0.4;
 fn rms_pressure_error(
     info: &SolveInfo,
     (area, rest): (&ContactArea, Option<&ContactArea>),
-    rms_pressure: f64,
+    [rms_pressure, max_pressure]: [f64; 2],
 ) -> Option<f64> {
     if area.rim.at_border > 0.0 {
         return None;
@@ -165,25 +166,28 @@ fn rms_pressure_error(
         return info.coarser.map(|coarser| OF_CHANGE * (rms_pressure - coarser.rms_pressure).abs());
     }
     let (rim, of_rest) = (&area.rim, rest.map_or(0.0, |rest| error_of_squares(&rest.rim)));
-    let of_thin_rims = (ERROR_OF_THIN_RIMS * rim.thin_rims).hypot(SCATTER_OF_THIN * rim.scatter_of_thin);
+    // Beside a thin rim, the pressure is the hardness.
+    let of_thin_rims = (ERROR_OF_THIN_RIMS * rim.thin_rims).hypot(SCATTER_OF_THIN * max_pressure * rim.scatter_of_thin);
     let parts = [error_of_squares(rim), of_rest, of_thin_rims, rim.missing_inside[1]];
     Some(0.5 * parts.into_iter().fold(0.0, f64::hypot) / rms_pressure)
 }
 
 /// Estimated error of ⟨p²⟩ at edges, but for thin rims.
 fn error_of_squares(rim: &Rim) -> f64 {
-    let scatter = SQUARE_SCATTER * rim.typical_squares / rim.independent_edges.max(1.0).sqrt();
+    let scatter = SQUARE_SCATTER * rim.typical_squares / rim.independent_smooth.max(1.0).sqrt();
     let (edges, lone) = (ERROR_OF_SQUARES * rim.per_square * rim.squares, ERROR_OF_LONE * rim.lone_squares);
     scatter.hypot(edges).hypot(lone)
 }
 
-/// Ratio of the 95 % error of the mean gap to that of the area. It matters for contacts that are few and light.
-const GAP_OVER_AREA: f64 = 0.025;
+/// 95 % error of the mean gap, relative to the penetration and to the square of the relative error of the area.
+///
+/// It matters for contacts of a few elements.
+const GAP_OVER_AREA: f64 = 2.0;
 
 /// 95 % error of the mean gap from singular pressure at free borders.
 ///
 /// Its unit is the ratio of `Rim::at_border` to the mean pressure. The measured values are in docs/constants.md.
-const GAP_AT_BORDER: f64 = 0.7;
+const GAP_AT_BORDER: f64 = 0.5;
 
 /// Estimated error of the mean gap. It is 0 without contact.
 fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {
@@ -192,10 +196,10 @@ fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f6
     let [common, scatter] = rim.gap_errors;
     let scatter = common.hypot(scatter / rim.independent_edges.max(1.0).sqrt());
     let parts = [
-        of_element * per_contact_area(rim.area, area) * scatter,
+        of_element * rim.area / area.cells.max(f64::MIN_POSITIVE) * scatter,
         rim.scatter_of_sharp,
         rim.hidden_gap,
-        GAP_OVER_AREA * area.relative_error() * info.mean_gap(),
+        GAP_OVER_AREA * area.relative_error().min(1.0).powi(2) * info.penetration.abs(),
         GAP_AT_BORDER * rim.at_border / mean_pressure,
         // The overlap that the certificate has found.
         info.certificate.penetration * info.penetration_full_contact,

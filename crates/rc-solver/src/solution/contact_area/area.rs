@@ -49,6 +49,10 @@ pub struct ContactArea {
 pub(crate) struct Rim {
     /// Σ over edges of the area of an element.
     pub(crate) area: f64,
+    /// The same over edges where the pressure is a square root of the distance.
+    pub(crate) smooth: f64,
+    /// Area of the cell, in λ².
+    pub(crate) cell: f64,
     /// Σ over smooth edges of an element's area times the squared pressure inside, in E*².
     pub(crate) squares: f64,
     /// The same squares in the mean over positions of the edges between elements, at least [`Rim::squares`].
@@ -57,10 +61,12 @@ pub(crate) struct Rim {
     pub(crate) lone_squares: f64,
     /// Σ over elements in thin elastic rims of their area times p (H - p), in E*².
     pub(crate) thin_rims: f64,
-    /// Scatter of [`Rim::thin_rims`]: the root of the sum of the squares of its terms.
+    /// Scatter of [`Rim::thin_rims`]: the root of the sum of the squares of its terms, relative to H.
     pub(crate) scatter_of_thin: f64,
     /// Part of the edges that belong to plastic elements or to thin elastic rims.
     pub(crate) part_of_thin: f64,
+    /// Part of the edges that belong to plastic elements.
+    pub(crate) part_of_sharp: f64,
     /// Part of [`ContactArea::missing_square`] inside contacts, and its 95 % error.
     pub(crate) missing_inside: [f64; 2],
     /// Size of [`EdgeBias::per_square`].
@@ -69,10 +75,11 @@ pub(crate) struct Rim {
     pub(crate) gap_errors: [f64; 2],
     /// 95 % error of the mean gap from places that elements may hide, in λ.
     pub(crate) hidden_gap: f64,
-    /// Number of edges that scatter independently.
+    /// Number of edges that scatter independently, and number of smooth ones among them.
     ///
     /// Edges in a row with the same place between elements count as one, and so do those of identical asperities.
     pub(crate) independent_edges: f64,
+    pub(crate) independent_smooth: f64,
     /// 95 % error of the penetration from the scatter of sharp edges, in λ.
     pub(crate) scatter_of_sharp: f64,
     /// Side of the smallest elements, in λ.
@@ -136,6 +143,14 @@ const SHIFT_AT_BORDER: [f64; 2] = [0.3, 0.5];
 const ERROR_OF_SHORT_WAVES: f64 = 1.2;
 const LONGEST_SHORT_WAVE: f64 = 1.5;
 
+/// 95 % error of the place of an edge for a conducting spot, in elements, at edges where the pressure vanishes and at
+/// edges of plastic elements.
+///
+/// Elements at the former edges are in contact if a part of them is, which is what a solve needs. The latter are in
+/// contact if their centre is, which makes spots narrower.
+const WIDTH_AT_EDGE: f64 = 0.01;
+const WIDTH_AT_SHARP_EDGE: f64 = 0.13;
+
 /// Part of the squares of lone elements that they miss.
 ///
 /// It is a mean over contacts of 0.3 to 0.8 elements in radius.
@@ -179,7 +194,7 @@ impl ContactArea {
         let grid = pressure.grid();
         let values = [pressure.values(), gap.values()];
         let at = |place: [usize; 2]| around(values, [grid.nx(), grid.ny()], place, boundary);
-        let mut sums = sums_of_rows(grid, hardness, |i| values[0][i] > 0.0, at);
+        let mut sums = sums_of_rows((grid, boundary), hardness, |i| values[0][i] > 0.0, at);
         if boundary == Boundary::Free {
             add_borders(&mut sums, pressure, hardness);
         }
@@ -209,7 +224,7 @@ impl ContactArea {
             missing_square: 0.0,
             fraction: 0.0,
             error: 0.0,
-            rim: Rim { side: (sides[0] * sides[1]).sqrt(), ..Rim::of(sums, finest, bias) },
+            rim: Rim::of(sums, finest, bias),
         };
         let mut scatter = Scatter::default();
         for (coarser, (size, sums)) in size_of_elements(finest, sums).enumerate() {
@@ -241,14 +256,14 @@ impl ContactArea {
     /// Round contacts of the radius a with the pressure c √s at the distance s from their edge. A stamp of this radius
     /// has E* dΔ/(π √(2 a s)), so the edge moves by 2 E* dΔ/(π c √(2 a)).
     fn per_depth(&self) -> f64 {
-        let Rim { area, squares, side, .. } = self.rim;
+        let Rim { area, smooth, squares, side, cell, .. } = self.rim;
         if squares == 0.0 || self.fraction == 0.0 {
             return 0.0;
         }
         // On average, the last element of a contact is half an element from the edge.
-        let c = (2.0 * squares / (area * side)).sqrt();
-        let radius = 2.0 * self.fraction / self.perimeter;
-        2.0 * self.perimeter / (PI * c * (2.0 * radius).sqrt())
+        let c = (2.0 * squares / (smooth * side)).sqrt();
+        let radius = 2.0 * self.fraction * cell / self.perimeter;
+        2.0 * self.perimeter * (smooth / area) / (PI * c * (2.0 * radius).sqrt() * cell)
     }
 
     /// Unit of [`SHIFT_AT_BORDER`].
@@ -264,6 +279,19 @@ impl ContactArea {
         Self { error: self.error.hypot(ERROR_OF_SOLVE * energy_error.powi(2) * self.fraction), ..self }
     }
 
+    /// Relative error of the width of contact spots, which their conductance is proportional to.
+    ///
+    /// It is the width by which elements miss the edges of spots, in units of the width 2 A/P.
+    pub(crate) fn relative_error_of_width(&self) -> f64 {
+        if self.fraction == 0.0 {
+            return 0.0;
+        }
+        let sharp = self.rim.part_of_sharp;
+        let of_edge = WIDTH_AT_EDGE * (1.0 - sharp) + WIDTH_AT_SHARP_EDGE * sharp;
+        let edges = of_edge * self.rim.area / (2.0 * self.fraction);
+        (0.5 * self.relative_error()).hypot(edges)
+    }
+
     /// Ratio of `error` to `fraction`. It is 0 without contact.
     #[must_use]
     pub fn relative_error(&self) -> f64 {
@@ -275,7 +303,7 @@ impl ContactArea {
 ///
 /// `at` gives pressure and gap around each place. The gap of contact is subtracted from the gap.
 pub(crate) fn sums_of_rows<A: Fn(isize, isize) -> [f64; 2]>(
-    grid: Grid,
+    (grid, boundary): (Grid, Boundary),
     hardness: f64,
     is_in_contact: impl Fn(usize) -> bool + Sync,
     at: impl Fn([usize; 2]) -> A + Sync,
@@ -284,7 +312,7 @@ pub(crate) fn sums_of_rows<A: Fn(isize, isize) -> [f64; 2]>(
     let row_sums = |iy: usize| {
         let mut sums = EdgeSums::default();
         for ix in (0..nx).filter(|ix| is_in_contact(iy * nx + ix)) {
-            sums.add(sides, hardness, &at([ix, iy]));
+            sums.add(sides, hardness, &at([ix, iy]), &distance([nx, grid.ny()], [ix, iy], boundary));
         }
         sums
     };
@@ -313,22 +341,29 @@ fn size_of_elements(finest: Grid, sums: &[EdgeSums]) -> impl Iterator<Item = (f6
 }
 
 impl Rim {
-    /// All but [`Rim::side`].
     fn of(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> Self {
-        let mut rim = Self { per_square: bias.per_square.abs(), gap_errors: bias.gap_errors, ..Self::default() };
-        let (mut sharp, mut thin, mut scatter_of_thin, mut step) = (0.0, 0.0, 0.0_f64, [0.0; 2]);
-        let side = finest.spacing().x;
+        let area = finest.spacing().x * finest.spacing().y;
+        let mut rim = Self {
+            per_square: bias.per_square.abs(),
+            gap_errors: bias.gap_errors,
+            side: area.sqrt(),
+            cell: area * finest.len() as f64,
+            ..Self::default()
+        };
+        let (mut scatter_of_thin, mut scatter_of_sharp, mut step) = (0.0_f64, 0.0_f64, [0.0; 2]);
         for (size, sums) in size_of_elements(finest, sums) {
             let (edges, together) = (sums.edges as f64, edges_that_scatter_together(sums));
+            let (sharp, smooth) = (sums.sharp as f64, (sums.edges - sums.sharp - sums.thin) as f64);
             rim.area += size * edges;
+            rim.smooth += size * smooth;
             rim.squares += size * sums.squares;
             // Where p² is linear, that of the second element is on average three times that of the first.
             rim.typical_squares += size * sums.squares.max(sums.next_squares / 3.0);
             rim.lone_squares += size * sums.lone_squares;
-            rim.hidden_gap += size * side * sums.hidden_rises;
+            rim.hidden_gap += size * (size * rim.cell).sqrt() * sums.hidden_rises;
             rim.thin_rims += size * sums.thin_rims;
             scatter_of_thin += size.powi(2) * sums.thin_rims_squared * together;
-            thin += size * (sums.sharp + sums.thin) as f64;
+            rim.part_of_sharp += size * sharp;
             rim.missing_inside[0] +=
                 size * (bias.per_difference * sums.differences + bias.per_second_difference * sums.second_differences);
             let of_short_waves = (sums.second_differences - LONGEST_SHORT_WAVE * sums.differences).max(0.0);
@@ -336,14 +371,18 @@ impl Rim {
                 * (bias.per_difference_error * sums.differences
                     + ERROR_OF_SHORT_WAVES * bias.per_difference.abs() * of_short_waves);
             rim.independent_edges += edges / together;
+            rim.independent_smooth += smooth / together;
             rim.at_border += size * sums.at_border;
-            sharp += size.powi(2) * sums.sharp as f64 * together;
+            scatter_of_sharp += size.powi(2) * sharp * together;
             step = [step[0] + size * sums.steps, step[1] + size * sums.known_sharp as f64];
         }
         rim.scatter_of_thin = scatter_of_thin.sqrt();
-        rim.part_of_thin = if rim.area > 0.0 { thin / rim.area } else { 0.0 };
+        if rim.area > 0.0 {
+            rim.part_of_thin = 1.0 - rim.smooth / rim.area;
+            rim.part_of_sharp /= rim.area;
+        }
         if step[1] > 0.0 {
-            rim.scatter_of_sharp = SCATTER_OF_SHARP * sharp.sqrt() / rim.area * step[0] / step[1];
+            rim.scatter_of_sharp = SCATTER_OF_SHARP * scatter_of_sharp.sqrt() / rim.area * step[0] / step[1];
         }
         rim
     }
@@ -433,6 +472,15 @@ pub(crate) fn around(
     }
 }
 
+/// Distance of the places around an element of a grid, in its sides. It is 0 beyond a free border.
+pub(crate) fn distance([nx, ny]: [usize; 2], [ix, iy]: [usize; 2], boundary: Boundary) -> impl Fn(isize, isize) -> f64 {
+    let is_place = |i: usize, d: isize, n: usize| i.checked_add_signed(d).is_some_and(|i| i < n);
+    move |dx, dy| {
+        let is_inside = boundary == Boundary::Periodic || (is_place(ix, dx, nx) && is_place(iy, dy, ny));
+        f64::from(u8::from(is_inside))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -446,7 +494,7 @@ mod tests {
         for x in 0..64 {
             for y in -2..66 {
                 if at(x, y)[0] > 0.0 {
-                    sums.add([1.0 / 64.0; 2], f64::INFINITY, &|dx, dy| at(x + dx, y + dy));
+                    sums.add([1.0 / 64.0; 2], f64::INFINITY, &|dx, dy| at(x + dx, y + dy), &|_, _| 1.0);
                 }
             }
         }

@@ -62,7 +62,7 @@ pub(crate) struct EdgeSums {
     ///
     /// The elastic rim there is thinner than an element.
     pub(crate) thin_rims: f64,
-    /// Σ of the squares of the terms of [`EdgeSums::thin_rims`].
+    /// Σ of the squares of the terms of [`EdgeSums::thin_rims`], relative to H².
     pub(crate) thin_rims_squared: f64,
     /// Σ of the squared differences of pressure between neighbours that are both in elastic contact.
     pub(crate) differences: f64,
@@ -94,14 +94,22 @@ impl EdgeSums {
     /// Adds an element in contact, where pressures are at most the `hardness`.
     ///
     /// `at` gives pressure and gap at a place relative to the element, in elements. A gap that is not known may be NaN.
-    /// `sides` are the sides of the element.
-    pub(crate) fn add(&mut self, sides: [f64; 2], hardness: f64, at: &impl Fn(isize, isize) -> [f64; 2]) {
+    /// `distance` is that of a neighbour's centre in sides of the element. It is 0 beyond a free border. `sides` are the
+    /// sides of the element.
+    pub(crate) fn add(
+        &mut self,
+        sides: [f64; 2],
+        hardness: f64,
+        at: &impl Fn(isize, isize) -> [f64; 2],
+        distance: &impl Fn(isize, isize) -> f64,
+    ) {
         self.n_contact += 1;
         let pressure = at(0, 0)[0];
         self.pressure += pressure;
         let around = AROUND.map(|[dx, dy]| at(dx, dy)[0]);
         let beside = [[around[3], around[4]], [around[1], around[6]]];
-        self.add_inside(pressure, hardness, beside);
+        let distances = [[[-1, 0], [1, 0]], [[0, -1], [0, 1]]].map(|axis| axis.map(|[dx, dy]| distance(dx, dy)));
+        self.add_inside(pressure, hardness, (beside, distances));
         let free = around.map(|p| p <= 0.0);
         if free == [false; 8] {
             return;
@@ -111,7 +119,7 @@ impl EdgeSums {
         if is_thin_rim {
             let term = pressure * (hardness - pressure);
             self.thin_rims += term;
-            self.thin_rims_squared += term * term;
+            self.thin_rims_squared += (term / hardness).powi(2);
         }
         for ([dx, dy], _) in AROUND.into_iter().zip(free).filter(|&(_, free)| free) {
             if dx != 0 && dy != 0 {
@@ -137,22 +145,25 @@ impl EdgeSums {
     }
 
     /// Adds the differences of pressure to the neighbours, which lie before and behind along both axes.
-    fn add_inside(&mut self, pressure: f64, hardness: f64, beside: [[f64; 2]; 2]) {
+    ///
+    /// A neighbour of another size is not at the distance of a side, and beyond a free border there is none.
+    fn add_inside(&mut self, pressure: f64, hardness: f64, (beside, distances): ([[f64; 2]; 2], [[f64; 2]; 2])) {
         let mut curvatures = [0.0; 2];
         // A step to a plastic element is at the edge of the elastic part, as the step to a free element is.
         let is_elastic = |p: f64| p > 0.0 && p < hardness;
-        for ([before, behind], curvature) in beside.into_iter().zip(&mut curvatures) {
+        for (([before, behind], distances), curvature) in beside.into_iter().zip(distances).zip(&mut curvatures) {
+            let in_line = distances.iter().all(|distance| (distance - 1.0).abs() < 0.1);
             let second = before - 2.0 * pressure + behind;
-            if is_elastic(pressure) && is_elastic(behind) {
-                self.differences += (behind - pressure).powi(2);
-                if is_elastic(before) {
+            if distances[1] > 0.0 && is_elastic(pressure) && is_elastic(behind) {
+                self.differences += ((behind - pressure) / distances[1]).powi(2);
+                if in_line && is_elastic(before) {
                     self.second_differences += second.powi(2);
                 }
             }
             if behind <= 0.0 && before <= 0.0 && pressure < hardness {
                 self.lone_squares += pressure * pressure;
             }
-            *curvature = if before.min(behind) >= pressure { second } else { 0.0 };
+            *curvature = if in_line && before.min(behind) >= pressure { second } else { 0.0 };
         }
         // Half an element from the minimum, the pressure is higher by an eighth of the second difference.
         let rise = 0.25 * (curvatures[0] * curvatures[1]).sqrt();
@@ -355,7 +366,7 @@ mod tests {
         for position in [0.25, 0.5, 0.75] {
             let at = |dx: isize, _: isize| [if dx <= 0 { 1.0 } else { 0.0 }, 0.1 * (dx as f64 - position)];
             let mut sums = EdgeSums::default();
-            EdgeSums::add(&mut sums, [1.0; 2], 1.0, &at);
+            EdgeSums::add(&mut sums, [1.0; 2], 1.0, &at, &|_, _| 1.0);
             assert_eq!((sums.sharp, sums.known_sharp), (1, 1));
             assert!((sums.shift_of_sharp - (position - 0.5)).abs() < 1e-12, "{position}: {sums:?}");
         }
@@ -383,7 +394,7 @@ mod tests {
         let hidden = |least: f64| {
             let at = |x: isize, y: isize| [least + 0.5 * ((x as f64 - 0.4).powi(2) + (y as f64).powi(2)), 0.0];
             let mut sums = EdgeSums::default();
-            EdgeSums::add(&mut sums, [1.0; 2], f64::INFINITY, &at);
+            EdgeSums::add(&mut sums, [1.0; 2], f64::INFINITY, &at, &|_, _| 1.0);
             sums.hidden
         };
         assert_eq!([0.01, 0.1, 0.3].map(hidden), [1, 1, 0]);

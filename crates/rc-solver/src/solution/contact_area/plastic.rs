@@ -61,7 +61,7 @@ impl PlasticEdges {
             let at = around(values, [grid.nx(), grid.ny()], place, boundary);
             move |dx: isize, dy: isize| left(at(dx, dy), hardness)
         };
-        let sums = sums_of_rows(grid, hardness, |i| values[0][i] < hardness, at);
+        let sums = sums_of_rows((grid, boundary), hardness, |i| values[0][i] < hardness, at);
         let pairs = pressure.values().iter().zip(gap.values());
         let flow: f64 = pairs.filter(|(p, _)| **p >= hardness).map(|(_, g)| (-g).max(0.0)).sum();
         Self::from_sums(&[sums], grid, bias, flow / grid.len() as f64)
