@@ -220,19 +220,7 @@ impl EdgeSums {
 
     /// The sums as ranks exchange them. Counts are exact.
     pub(crate) fn to_values(self) -> Values {
-        let Self {
-            n_contact,
-            edges,
-            diagonals,
-            known,
-            sharp,
-            known_sharp,
-            thin,
-            hidden,
-            turns,
-            positions,
-            ..
-        } = self;
+        let Self { n_contact, edges, diagonals, known, sharp, known_sharp, thin, hidden, turns, positions, .. } = self;
         let Self { shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares, .. } = self;
         let Self { next_squares, thin_rims, thin_rims_squared, differences, second_differences, .. } = self;
         let Self { hidden_rises, at_border, length, .. } = self;
@@ -240,8 +228,11 @@ impl EdgeSums {
         let sums = [shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares];
         let of_pressures = [next_squares, thin_rims, thin_rims_squared, differences, second_differences];
         let counts = counts.into_iter().map(|n| n as f64).chain([turns as f64]);
-        let mut values =
-            counts.chain(sums).chain(of_pressures).chain([hidden_rises, at_border, length]).chain(positions.map(f64::from));
+        let mut values = counts
+            .chain(sums)
+            .chain(of_pressures)
+            .chain([hidden_rises, at_border, length])
+            .chain(positions.map(f64::from));
         std::array::from_fn(|_| values.next().unwrap_or_default())
     }
 
@@ -251,8 +242,16 @@ impl EdgeSums {
             std::array::from_fn(|i| values[i] as usize);
         let [shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares] =
             std::array::from_fn(|i| values[10 + i]);
-        let [next_squares, thin_rims, thin_rims_squared, differences, second_differences, hidden_rises, at_border, length] =
-            std::array::from_fn(|i| values[17 + i]);
+        let [
+            next_squares,
+            thin_rims,
+            thin_rims_squared,
+            differences,
+            second_differences,
+            hidden_rises,
+            at_border,
+            length,
+        ] = std::array::from_fn(|i| values[17 + i]);
         Self {
             n_contact,
             edges,
