@@ -21,6 +21,7 @@ mod interchange;
 mod layer;
 mod leakage;
 mod penetration;
+mod perimeter;
 mod pits;
 mod ranks;
 mod reference;

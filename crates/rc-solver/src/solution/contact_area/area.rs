@@ -1,6 +1,6 @@
 //! The contact area, its edges and its error.
 
-use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
+use std::f64::consts::{PI, SQRT_2};
 
 use crate::solution::contact_area::edge_sums::EdgeSums;
 use rayon::prelude::*;
@@ -15,10 +15,9 @@ pub struct ContactArea {
     pub cells: f64,
     /// Number of edges of smallest elements between elements in and out of contact.
     pub perimeter_edges: usize,
-    /// Length of the edges of all contacts, in λ, without the steps of the elements.
+    /// Length of the edges of all contacts, in λ, along the edges located between the centres of elements.
     ///
-    /// It follows from Crofton's formula for eight directions. For a straight edge, the error is at most 5 %. In the
-    /// mean over directions, it is zero.
+    /// The error is at most 0.3 % for a straight edge on squares, in any direction.
     pub perimeter: f64,
     /// Number of contacts minus the number of holes in them.
     ///
@@ -161,6 +160,13 @@ const OF_LONE_SQUARES: f64 = 0.25;
 /// It is relative to the area and to the square of the energy error.
 const ERROR_OF_SOLVE: f64 = 1.0;
 
+/// Excess of the length along edges that are not sharp, relative to it, in the mean over directions.
+///
+/// Their positions have errors that depend on the place between two centres, so that a straight edge is found with
+/// bends. The excess is 0 along the elements and at 45 degrees to them, and at most 0.005 at 18 to 27 degrees, for any
+/// size of the elements.
+const EXCESS_LENGTH: f64 = 0.0021;
+
 impl ContactArea {
     /// The contact area of `pressure` and `gap` on a uniform grid.
     ///
@@ -240,7 +246,7 @@ impl ContactArea {
             area.euler_number += contacts;
             area.gap_deviation += deviation;
             area.perimeter_edges += sums.edges << coarser;
-            area.perimeter += length(sums, sides.map(|side| side * f64::from(1_u32 << coarser)));
+            area.perimeter += sums.length * (1.0 - EXCESS_LENGTH * smooth / edges.max(1.0));
             let of_bias = bias.per_edge_error.hypot(ERROR_OF_OBLONG * (sides[0] / sides[1]).ln());
             scatter.add(size, sums, [deviation, of_bias * smooth]);
         }
@@ -433,24 +439,6 @@ fn edges_that_scatter_together(sums: &EdgeSums) -> f64 {
     // Long edges of a small slope are correlated over more than one step.
     let in_rows = ((2.0 - DIAGONALS) / steps).max(1.0).powf(1.5);
     in_rows.max(sums.copies()).min(edges).max(1.0)
-}
-
-/// Length of all edges of elements with these sides.
-///
-/// It follows from Crofton's formula, for eight directions on squares and for four on rectangles.
-fn length(sums: &EdgeSums, sides: [f64; 2]) -> f64 {
-    let (along_x, along_y) = (sums.along_x as f64, (sums.edges - sums.along_x) as f64);
-    let [x, y] = sides;
-    if are_squares(sides) {
-        PI / 8.0 * (x * y).sqrt() * (along_x + along_y + FRAC_1_SQRT_2 * sums.diagonals as f64)
-    } else {
-        PI / 4.0 * (y * along_x + x * along_y)
-    }
-}
-
-/// Whether elements are squares, up to rounding.
-fn are_squares([x, y]: [f64; 2]) -> bool {
-    (x / y - 1.0).abs() < 1e-6
 }
 
 /// Pressure and gap at places around an element of a grid.

@@ -2,6 +2,7 @@
 
 use std::ops::{Add, AddAssign};
 
+use crate::solution::contact_area::corner::{at_corner, sharp_position};
 use crate::solution::contact_area::edge::Edge;
 
 /// The eight neighbours of an element, in order around it.
@@ -23,8 +24,6 @@ pub(crate) struct EdgeSums {
     pub(crate) n_contact: usize,
     /// Number of pairs of neighbours of which one is in contact.
     pub(crate) edges: usize,
-    /// Number of these pairs that are neighbours along x.
-    pub(crate) along_x: usize,
     /// Number of such pairs across a corner.
     pub(crate) diagonals: usize,
     /// Number of edges with a known gap beside the contact.
@@ -38,7 +37,7 @@ pub(crate) struct EdgeSums {
     /// Number of edges of plastic elements.
     ///
     /// There the pressure falls from the hardness to zero within an element. Of the sums above, these edges are only in
-    /// `edges`, `along_x` and `diagonals`.
+    /// `edges`, `diagonals` and `length`.
     pub(crate) sharp: usize,
     /// Number of sharp edges where the gap beside the contact is known.
     pub(crate) known_sharp: usize,
@@ -78,6 +77,8 @@ pub(crate) struct EdgeSums {
     ///
     /// It is four times the number of contacts minus the number of their holes.
     pub(crate) turns: isize,
+    /// Σ of the lengths of located edges between the centres of elements, in λ.
+    pub(crate) length: f64,
     /// Σ p² s over the sides of elements along free borders, with the side s across the border, in E*² λ.
     pub(crate) at_border: f64,
     /// Number of located edges by the root of their position between the centres of two elements.
@@ -121,15 +122,15 @@ impl EdgeSums {
             self.thin_rims += term;
             self.thin_rims_squared += (term / hardness).powi(2);
         }
-        for ([dx, dy], _) in AROUND.into_iter().zip(free).filter(|&(_, free)| free) {
+        let mut positions = [0.5; 8];
+        for (place, [dx, dy]) in AROUND.into_iter().enumerate().filter(|&(place, _)| free[place]) {
             if dx != 0 && dy != 0 {
                 self.diagonals += 1;
                 continue;
             }
             self.edges += 1;
-            self.along_x += usize::from(dy == 0);
             if pressure >= hardness {
-                self.add_sharp(at(0, 0)[1], at(dx, dy)[1]);
+                positions[place] = self.add_sharp(at(0, 0)[1], at(dx, dy)[1]).unwrap_or(0.5);
                 continue;
             }
             if is_thin_rim {
@@ -139,9 +140,10 @@ impl EdgeSums {
                 self.next_squares += at(-dx, -dy)[0].powi(2);
             }
             let side = if dy == 0 { sides[0] } else { sides[1] };
-            self.add_smooth([1, 2].map(|steps| at(steps * dx, steps * dy)[1] / (pressure * side)));
+            let ratios = [1, 2].map(|steps| at(steps * dx, steps * dy)[1] / (pressure * side));
+            positions[place] = self.add_smooth(ratios).unwrap_or(0.5);
         }
-        self.add_turns(at);
+        self.add_corners(sides, hardness, positions, at);
     }
 
     /// Adds the differences of pressure to the neighbours, which lie before and behind along both axes.
@@ -173,25 +175,29 @@ impl EdgeSums {
         }
     }
 
-    /// Adds the corners of an element.
-    fn add_turns(&mut self, at: &impl Fn(isize, isize) -> [f64; 2]) {
-        let in_contact = |dx: isize, dy: isize| at(dx, dy)[0] > 0.0;
-        for [x, y] in [[-1, -1], [0, -1], [-1, 0], [0, 0]] {
-            let corner = [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]];
-            // The first of its elements in contact counts each corner.
-            if corner.into_iter().find(|&[x, y]| in_contact(x, y)) == Some([0, 0]) {
-                match corner.into_iter().filter(|&[x, y]| in_contact(x, y)).count() {
-                    1 => self.turns += 1,
-                    3 => self.turns -= 1,
-                    _ => {}
-                }
+    /// Adds the corners of an element with these positions of edges to its eight neighbours.
+    fn add_corners(
+        &mut self,
+        sides: [f64; 2],
+        hardness: f64,
+        positions: [f64; 8],
+        at: &impl Fn(isize, isize) -> [f64; 2],
+    ) {
+        let [_, below, _, before, behind, _, above, _] = positions;
+        for (dy, along_y) in [(-1, below), (1, above)] {
+            for (dx, along_x) in [(-1, before), (1, behind)] {
+                let (turns, length) = at_corner(at, [dx, dy], [along_x, along_y], sides, hardness);
+                self.turns += turns;
+                self.length += length;
             }
         }
     }
 
     /// Adds an edge whose next two gaps outside have these ratios to the pressure ([`Edge::new`]).
-    fn add_smooth(&mut self, [next, second]: [f64; 2]) {
-        let Some(edge) = Edge::new(next) else { return };
+    ///
+    /// Returns its position, if that is known.
+    fn add_smooth(&mut self, [next, second]: [f64; 2]) -> Option<f64> {
+        let edge = Edge::new(next)?;
         self.shift += edge.position() - 0.5;
         self.known[0] += 1;
         self.add_position(edge.position());
@@ -199,22 +205,20 @@ impl EdgeSums {
             self.known[1] += 1;
             self.deviation += deviation;
         }
+        Some(edge.position())
     }
 
     /// Adds the edge between a plastic element and a neighbour out of contact.
     ///
-    /// `inside` and `outside` are their gaps. A negative gap is an overlap.
-    fn add_sharp(&mut self, inside: f64, outside: f64) {
+    /// `inside` and `outside` are their gaps. A negative gap is an overlap. Returns the position, if it is known.
+    fn add_sharp(&mut self, inside: f64, outside: f64) -> Option<f64> {
         self.sharp += 1;
-        if outside.is_nan() {
-            return;
-        }
-        let (overlap, gap) = ((-inside).max(0.0), outside.max(0.0));
-        let position = if overlap + gap > 0.0 { overlap / (overlap + gap) } else { 0.5 };
+        let position = sharp_position([inside, outside])?;
         self.shift_of_sharp += position - 0.5;
-        self.steps += overlap + gap;
+        self.steps += (-inside).max(0.0) + outside.max(0.0);
         self.known_sharp += 1;
         self.add_position(position);
+        Some(position)
     }
 
     /// Counts an edge at a position between the centres of two elements, from 0 to 1.
@@ -227,44 +231,41 @@ impl EdgeSums {
 
     /// The sums as ranks exchange them. Counts are exact.
     pub(crate) fn to_values(self) -> Values {
-        let Self {
-            n_contact,
-            edges,
-            along_x,
-            diagonals,
-            known,
-            sharp,
-            known_sharp,
-            thin,
-            hidden,
-            turns,
-            positions,
-            ..
-        } = self;
+        let Self { n_contact, edges, diagonals, known, sharp, known_sharp, thin, hidden, turns, positions, .. } = self;
         let Self { shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares, .. } = self;
         let Self { next_squares, thin_rims, thin_rims_squared, differences, second_differences, .. } = self;
-        let Self { hidden_rises, at_border, .. } = self;
-        let counts = [n_contact, edges, along_x, diagonals, known[0], known[1], sharp, known_sharp, thin, hidden];
+        let Self { hidden_rises, at_border, length, .. } = self;
+        let counts = [n_contact, edges, diagonals, known[0], known[1], sharp, known_sharp, thin, hidden];
         let sums = [shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares];
         let of_pressures = [next_squares, thin_rims, thin_rims_squared, differences, second_differences];
         let counts = counts.into_iter().map(|n| n as f64).chain([turns as f64]);
-        let mut values =
-            counts.chain(sums).chain(of_pressures).chain([hidden_rises, at_border]).chain(positions.map(f64::from));
+        let mut values = counts
+            .chain(sums)
+            .chain(of_pressures)
+            .chain([hidden_rises, at_border, length])
+            .chain(positions.map(f64::from));
         std::array::from_fn(|_| values.next().unwrap_or_default())
     }
 
     /// The sums from [`EdgeSums::to_values`].
     pub(crate) fn from_values(values: &Values) -> Self {
-        let [n_contact, edges, along_x, diagonals, first, second, sharp, known_sharp, thin, hidden] =
+        let [n_contact, edges, diagonals, first, second, sharp, known_sharp, thin, hidden] =
             std::array::from_fn(|i| values[i] as usize);
         let [shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares] =
-            std::array::from_fn(|i| values[11 + i]);
-        let [next_squares, thin_rims, thin_rims_squared, differences, second_differences, hidden_rises, at_border] =
-            std::array::from_fn(|i| values[18 + i]);
+            std::array::from_fn(|i| values[10 + i]);
+        let [
+            next_squares,
+            thin_rims,
+            thin_rims_squared,
+            differences,
+            second_differences,
+            hidden_rises,
+            at_border,
+            length,
+        ] = std::array::from_fn(|i| values[17 + i]);
         Self {
             n_contact,
             edges,
-            along_x,
             diagonals,
             known: [first, second],
             shift,
@@ -284,8 +285,9 @@ impl EdgeSums {
             second_differences,
             hidden,
             hidden_rises,
-            turns: values[10] as isize,
+            turns: values[9] as isize,
             at_border,
+            length,
             positions: std::array::from_fn(|i| values[N_VALUES + i] as u32),
         }
     }
