@@ -103,7 +103,7 @@ pub fn leakage(gap: &Field, params: &LeakageParams) -> Result<Leakage, LeakageEr
     check(gap)?;
     let (half, variants) = if params.half_grid { on_coarser_grids(gap, params) } else { (None, None) };
     let solved = flows(gap, params, Role::Whole { half: half.as_ref() })?;
-    let bars = variants.map_or([None; 2], |variants| bars(gap, &solved, variants, params));
+    let bars = variants.map_or([None; 2], |variants| bars(gap, &solved, &variants, params));
     let flows = Axis::BOTH.map(|axis| {
         let i = axis.index();
         let (permeance, info) = solved.results[i];
@@ -137,7 +137,7 @@ fn on_coarser_grids(gap: &Field, params: &LeakageParams) -> (Option<OfGrid>, Opt
 /// Error bars of both permeances, from those on coarser grids.
 ///
 /// For axes along which the film does not percolate, contacts are also made smaller.
-fn bars(gap: &Field, solved: &OfGrid, coarser: Vec<[f64; 2]>, params: &LeakageParams) -> [Option<f64>; 2] {
+fn bars(gap: &Field, solved: &OfGrid, coarser: &[[f64; 2]], params: &LeakageParams) -> [Option<f64>; 2] {
     let closed = solved.percolates.map(|percolates| !percolates);
     let with_opened = || {
         let params = LeakageParams { error: params.error.max(ERROR_OF_OPENED), ..*params };
