@@ -54,7 +54,7 @@ pub(crate) struct HowSolved {
 }
 
 /// Relative errors of the conductance from its solve, for a solution that has converged and for others.
-const CONDUCTANCE: f64 = 1e-3;
+const CONDUCTANCE: f64 = 1.3e-3;
 const ROUGH_CONDUCTANCE: f64 = 0.05;
 
 impl<'a> Solution<'a> {

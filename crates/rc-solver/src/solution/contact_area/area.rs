@@ -147,8 +147,11 @@ const LONGEST_SHORT_WAVE: f64 = 1.5;
 ///
 /// Elements at the former edges are in contact if a part of them is, which is what a solve needs. The latter are in
 /// contact if their centre is, which makes spots narrower.
-const WIDTH_AT_EDGE: f64 = 0.01;
-const WIDTH_AT_SHARP_EDGE: f64 = 0.13;
+const WIDTH_AT_EDGE: f64 = 0.03;
+const WIDTH_AT_SHARP_EDGE: f64 = 0.16;
+
+/// Ratio of the 95 % error of this width to that of the area.
+const WIDTH_OF_AREA: f64 = 1.25;
 
 /// Part of the squares of lone elements that they miss.
 ///
@@ -295,7 +298,7 @@ impl ContactArea {
         let sharp = self.rim.part_of_sharp;
         let of_edge = WIDTH_AT_EDGE * (1.0 - sharp) + WIDTH_AT_SHARP_EDGE * sharp;
         let edges = of_edge * self.rim.area / (2.0 * self.fraction);
-        (0.5 * self.relative_error()).hypot(edges)
+        (WIDTH_OF_AREA * self.relative_error()).hypot(edges)
     }
 
     /// Ratio of `error` to `fraction`. It is 0 without contact.
