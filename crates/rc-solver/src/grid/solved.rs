@@ -2,6 +2,7 @@
 //!
 //! It may outlive the caller's kernel or operator.
 
+use rayon::prelude::*;
 use rc_core::{Boundary, EdgeBias, Field, Grid, Kernel, Operator};
 use rc_kernel::Spectral;
 
@@ -131,6 +132,18 @@ pub(crate) struct GridSolved<'a> {
     pub(crate) response: Response<'a>,
     /// The limit of the pressure. Infinite for an elastic contact.
     pub(crate) hardness: f64,
+}
+
+impl<'a> GridSolved<'a> {
+    /// The solution for the caller. In an elastic contact, overlaps that the tolerance has left become gaps of zero.
+    ///
+    /// The certificate holds their size.
+    pub(crate) fn new(mut solution: GridSolution, response: Response<'a>, hardness: f64) -> Self {
+        if hardness.is_infinite() {
+            solution.gap.values_mut().par_iter_mut().for_each(|gap| *gap = gap.max(0.0));
+        }
+        Self { solution, response, hardness }
+    }
 }
 
 impl Solved for GridSolved<'_> {

@@ -3,7 +3,7 @@
 use rc_core::{Boundary, EdgeBias, Field, Grid};
 
 use crate::solution::contact_area::area::ContactArea;
-use crate::solution::contact_area::area::{around, distance};
+use crate::solution::contact_area::area::{SMALLEST, around, distance};
 use crate::solution::contact_area::edge_sums::EdgeSums;
 
 /// One connected part of the contact.
@@ -117,9 +117,6 @@ impl ContactSpot {
         spots
     }
 }
-
-/// Smallest area of a spot, in its elements. It carries load, so it has an area.
-const SMALLEST: f64 = 0.1;
 
 /// Changes the areas of `spots` on `grid` so that they add up to `area`.
 ///

@@ -51,7 +51,7 @@ impl Observables {
         let plastic = hardness.is_finite().then(|| PlasticEdges::of(fields, hardness, bias, boundary));
         let pressure = &solution.pressure;
         let rms = parallel::rms(pressure.values(), pressure.grid().nx());
-        Self::new(&solution.info, (area, plastic), rms, parallel::maximum(pressure.values(), 0.0))
+        Self::new(&solution.info, (area, plastic), hardness, [rms, parallel::maximum(pressure.values(), 0.0)])
     }
 
     /// Observables from the contact area and the pressures of the elements.
@@ -60,8 +60,8 @@ impl Observables {
     pub(crate) fn new(
         info: &SolveInfo,
         (area, plastic): (ContactArea, Option<PlasticEdges>),
-        rms_pressure: f64,
-        max_pressure: f64,
+        hardness: f64,
+        [rms_pressure, max_pressure]: [f64; 2],
     ) -> Self {
         // Where the pressure leaves q = H - p to the hardness, edges of q are like other edges. p² is H² - 2 H q + q².
         let rest = plastic.map(|edges| edges.rest);
@@ -72,6 +72,9 @@ impl Observables {
             + of_thin_rims(&area, plastic.as_ref());
         let area = ContactArea { missing_square, ..area };
         let flow = plastic.map_or(0.0, |edges| edges.contact.mean_gap);
+        // The contact carries at most the hardness, and the plastic part is in it.
+        let least = plastic.map_or(0.0, |edges| edges.contact.fraction.max(info.mean_pressure / hardness).min(1.0));
+        let area = ContactArea { fraction: area.fraction.max(least), ..area };
         let bars = plastic.map(|edges| edges.contact.with_wider_bars(area));
         let observables = Self {
             area: bars.map_or(area, |(area, _)| area),
@@ -79,7 +82,7 @@ impl Observables {
             rms_pressure_corrected: corrected(rms_pressure, &area),
             rms_pressure_error: rms_pressure_error(info, (&area, rest.as_ref()), [rms_pressure, max_pressure]),
             max_pressure,
-            mean_gap: info.mean_gap() + flow,
+            mean_gap: (info.mean_gap() + flow).max(0.0),
             mean_gap_error: mean_gap_error(info, &area, rms_pressure)
                 .hypot(of_rest(&|rest| mean_gap_error(info, rest, rms_pressure))),
             elastic_energy: info.elastic_energy,
@@ -187,7 +190,7 @@ const GAP_OVER_AREA: f64 = 4.0;
 /// 95 % error of the mean gap from singular pressure at free borders.
 ///
 /// Its unit is the ratio of `Rim::at_border` to the mean pressure. The measured values are in docs/constants.md.
-const GAP_AT_BORDER: f64 = 0.5;
+const GAP_AT_BORDER: f64 = 0.4;
 
 /// Estimated error of the mean gap. It is 0 without contact.
 fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {

@@ -191,7 +191,7 @@ impl Solved for TileSolution<'_> {
     fn observables(&self) -> Observables {
         let max_pressure = self.mesh.layout().maximum(&self.pressure, 0.0);
         let rms_pressure = rms_pressure(&self.mesh, &self.pressure);
-        Observables::new(&self.info, (self.area, self.plastic), rms_pressure, max_pressure)
+        Observables::new(&self.info, (self.area, self.plastic), self.hardness, [rms_pressure, max_pressure])
     }
 
     /// To 1e-3 relative, or to a few percent if the solve did not converge. It takes a few applications of L.
@@ -227,6 +227,9 @@ impl Solved for TileSolution<'_> {
                 for (g, p) in rows.iter_mut().zip(row_of_tiles(mesh.finest(), pressure, first / TILE)) {
                     *g = part.of(*g, p, self.hardness);
                 }
+            } else {
+                // Without a hardness, the pressure does not matter.
+                rows.iter_mut().for_each(|g| *g = part.of(*g, 0.0, f64::INFINITY));
             }
             take(first, &rows)
         })

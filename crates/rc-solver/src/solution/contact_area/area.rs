@@ -158,6 +158,9 @@ const WIDTH_OF_AREA: f64 = 1.25;
 /// It is a mean over contacts of 0.3 to 0.8 elements in radius.
 const OF_LONE_SQUARES: f64 = 0.25;
 
+/// Smallest area of a contact, in the area of its elements. It carries load, so it has an area.
+pub(crate) const SMALLEST: f64 = 0.1;
+
 /// 95 % error of the area from the tolerance of the solve.
 ///
 /// It is relative to the area and to the square of the energy error.
@@ -218,7 +221,7 @@ impl ContactArea {
         let mean_pressure = size_of_elements(finest, sums).map(|(size, sums)| size * sums.pressure).sum();
         let [shift, error] = SHIFT_AT_BORDER.map(|part| part * area.change_by_border(mean_pressure));
         let error = scatter.error(area.cells - area.fraction, area.fraction.max(0.1 * area.cells)).hypot(error);
-        Self { fraction: (area.fraction - shift).max(0.0), error: error.min(1.0), ..area }
+        Self { fraction: (area.fraction - shift).max(SMALLEST * area.cells), error: error.min(1.0), ..area }
     }
 
     /// The area without its error, and the data that the error follows from.
