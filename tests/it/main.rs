@@ -17,6 +17,7 @@ mod fuzz;
 mod gauss_seidel;
 mod hardness;
 mod hertz;
+mod inequalities;
 mod interchange;
 mod layer;
 mod leakage;

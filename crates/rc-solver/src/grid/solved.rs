@@ -87,7 +87,6 @@ impl Response<'_> {
     pub(crate) fn stiffness(&self, solution: &GridSolution, hardness: f64) -> f64 {
         let is_full = solution.status == Status::FullContact;
         match self {
-            Self::Kernel(kernel) if is_full => kernel.get().uniform_displacement().unwrap_or(0.0).recip(),
             Self::Kernel(kernel) => {
                 let converged = solution.status != Status::NotConverged;
                 contact_stiffness(&solution.pressure, hardness, kernel.get(), converged)
@@ -141,6 +140,11 @@ impl<'a> GridSolved<'a> {
     pub(crate) fn new(mut solution: GridSolution, response: Response<'a>, hardness: f64) -> Self {
         if hardness.is_infinite() {
             solution.gap.values_mut().par_iter_mut().for_each(|gap| *gap = gap.max(0.0));
+        }
+        // As on tiles, full contact may have been found by the iteration, and may be plastic.
+        let is_periodic = response.boundary(solution.pressure.grid()) == Boundary::Periodic;
+        if solution.status == Status::Converged && is_periodic && solution.pressure.min() > 0.0 {
+            solution.status = Status::FullContact;
         }
         Self { solution, response, hardness }
     }

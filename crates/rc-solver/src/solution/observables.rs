@@ -23,7 +23,8 @@ pub struct Observables {
     pub rms_pressure_corrected: f64,
     /// Estimated discretisation error of `rms_pressure_corrected`.
     ///
-    /// `None` where contact reaches a free border, because the rms of the singular pressure there has no limit. With a
+    /// `None` where contact reaches a free border, and where heights jump at its edges, because the rms of the singular
+    /// pressure there has no limit. With a
     /// kernel without an error inside contacts, it is `None` in full contact without a coarser level to compare with.
     pub rms_pressure_error: Option<f64>,
     /// Maximum pressure.
@@ -155,13 +156,16 @@ fn of_thin_rims(area: &ContactArea, plastic: Option<&PlasticEdges>) -> f64 {
 /// third is expected.
 const OF_CHANGE: f64 = 0.4;
 
+/// Part of edges where heights jump, and the pressure is singular, above which the rms pressure has no limit.
+const MANY_JUMPS: f64 = 0.05;
+
 /// Estimated error of the rms pressure, see [`Observables::rms_pressure_error`].
 fn rms_pressure_error(
     info: &SolveInfo,
     (area, rest): (&ContactArea, Option<&ContactArea>),
     [rms_pressure, max_pressure]: [f64; 2],
 ) -> Option<f64> {
-    if area.rim.at_border > 0.0 {
+    if area.rim.at_border > 0.0 || area.rim.part_of_jumps > MANY_JUMPS {
         return None;
     }
     let rest = rest.filter(|rest| rest.perimeter_edges > 0);
@@ -203,7 +207,7 @@ fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f6
         rim.scatter_of_sharp,
         rim.hidden_gap,
         GAP_OVER_AREA * area.relative_error().min(1.0).powi(2) * info.penetration.abs(),
-        GAP_AT_BORDER * rim.at_border / mean_pressure,
+        GAP_AT_BORDER * (rim.at_border + rim.at_jumps) / mean_pressure,
         // The overlap that the certificate has found.
         info.certificate.penetration * info.penetration_full_contact,
     ];

@@ -88,12 +88,19 @@ pub(crate) struct Rim {
     /// It is the sum of p² a s over elements along a border, with their area a and their side s across the border. The
     /// sum is zero where contact does not reach a free border.
     pub(crate) at_border: f64,
+    /// The same at edges where heights jump.
+    pub(crate) at_jumps: f64,
+    /// Part of the edges where heights jump.
+    pub(crate) part_of_jumps: f64,
 }
 
 /// 95 % error of the area, in elements, for one independent edge.
 ///
 /// It grows with the root of the number of independent edges, and is the same on every mesh.
 const SCATTER: f64 = 0.165;
+
+/// The same for an edge where heights jump. It is anywhere between two centres.
+const SCATTER_OF_JUMP: f64 = 0.57;
 
 /// 95 % error of the bias, in elements, for each unit of [`ContactArea::gap_deviation`].
 ///
@@ -103,7 +110,7 @@ const ERROR_OF_DEVIATION: f64 = 0.018;
 /// 95 % error of the bias, relative to (count - `fraction`)² / `fraction`.
 ///
 /// It is of second order.
-const ERROR_OF_TERM: f64 = 0.25;
+const ERROR_OF_TERM: f64 = 0.3;
 
 /// 95 % error for each diagonal above or below the expected number [`DIAGONALS`].
 ///
@@ -304,6 +311,14 @@ impl ContactArea {
         (WIDTH_OF_AREA * self.relative_error()).hypot(edges)
     }
 
+    /// Part of the contact edges at which the heights jump, as at the edge of a flat top.
+    ///
+    /// Such an edge is anywhere between two samples of the heights.
+    #[must_use]
+    pub fn part_of_jumps(&self) -> f64 {
+        self.rim.part_of_jumps
+    }
+
     /// Ratio of `error` to `fraction`. It is 0 without contact.
     #[must_use]
     pub fn relative_error(&self) -> f64 {
@@ -365,7 +380,7 @@ impl Rim {
         let (mut scatter_of_thin, mut scatter_of_sharp, mut step) = (0.0_f64, 0.0_f64, [0.0; 2]);
         for (size, sums) in size_of_elements(finest, sums) {
             let (edges, together) = (sums.edges as f64, edges_that_scatter_together(sums));
-            let (sharp, smooth) = (sums.sharp as f64, (sums.edges - sums.sharp - sums.thin) as f64);
+            let (sharp, smooth) = (sums.sharp as f64, (sums.smooth() - sums.thin) as f64);
             rim.area += size * edges;
             rim.smooth += size * smooth;
             rim.squares += size * sums.squares;
@@ -385,12 +400,15 @@ impl Rim {
             rim.independent_edges += edges / together;
             rim.independent_smooth += smooth / together;
             rim.at_border += size * sums.at_border;
+            rim.at_jumps += size * sums.at_jumps;
+            rim.part_of_jumps += size * sums.jumps as f64;
             scatter_of_sharp += size.powi(2) * sharp * together;
             step = [step[0] + size * sums.steps, step[1] + size * sums.known_sharp as f64];
         }
         rim.scatter_of_thin = scatter_of_thin.sqrt();
         if rim.area > 0.0 {
-            rim.part_of_thin = 1.0 - rim.smooth / rim.area;
+            rim.part_of_jumps /= rim.area;
+            rim.part_of_thin = 1.0 - rim.smooth / rim.area - rim.part_of_jumps;
             rim.part_of_sharp /= rim.area;
         }
         if step[1] > 0.0 {
@@ -416,7 +434,9 @@ impl Scatter {
     /// Adds elements of one size with these sums of the deviation and of the error of the bias.
     fn add(&mut self, size: f64, sums: &EdgeSums, [deviation, bias]: [f64; 2]) {
         let edges = sums.edges as f64;
-        self.edges += (SCATTER * size).powi(2) * edges * edges_that_scatter_together(sums);
+        let (jumps, together) = (sums.jumps as f64, edges_that_scatter_together(sums));
+        let squares = SCATTER.powi(2) * (edges - jumps) + SCATTER_OF_JUMP.powi(2) * jumps;
+        self.edges += size.powi(2) * squares * together;
         self.deviation += ERROR_OF_DEVIATION * size * deviation;
         self.bias += size * bias;
         self.directions += ERROR_OF_DIRECTIONS * size * (sums.diagonals as f64 - DIAGONALS * edges);

@@ -67,7 +67,7 @@ mod tests {
         let gap = Field::from_fn(grid, |at| -distance(at));
         let values = [pressure.values(), gap.values()];
         let at = |place: [usize; 2]| around(values, sides, place, boundary);
-        sums_of_rows(grid, 1.0, |i| values[0][i] > 0.0, at)
+        sums_of_rows((grid, boundary), 1.0, |i| values[0][i] > 0.0, at)
     }
 
     #[test]

@@ -12,7 +12,7 @@ const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-
 const N_POSITIONS: usize = 128;
 
 /// Number of other values of [`EdgeSums`].
-const N_VALUES: usize = 25;
+const N_VALUES: usize = 27;
 
 /// The values of [`EdgeSums`] as ranks exchange them.
 pub(crate) type Values = [f64; N_VALUES + N_POSITIONS];
@@ -49,6 +49,12 @@ pub(crate) struct EdgeSums {
     pub(crate) shift_of_sharp: f64,
     /// Σ of overlap inside and gap outside, over sharp edges with a known gap, in λ.
     pub(crate) steps: f64,
+    /// Number of edges where the heights jump, as at the edge of a flat top.
+    ///
+    /// They may be anywhere between the two centres. Of the sums above, these edges are only in `edges` and `diagonals`.
+    pub(crate) jumps: usize,
+    /// Σ p² s over these edges, with the side s across the edge, in E*² λ.
+    pub(crate) at_jumps: f64,
     /// Σ p of the elements.
     pub(crate) pressure: f64,
     /// Σ p² of the elements inside, over all edges that are not sharp, without [`EdgeSums::thin_rims`].
@@ -83,6 +89,19 @@ pub(crate) struct EdgeSums {
     pub(crate) at_border: f64,
     /// Number of located edges by the root of their position between the centres of two elements.
     positions: [u32; N_POSITIONS],
+}
+
+/// Position below which the last element of a contact has a lower pressure than the next one inside.
+///
+/// At the edge of a flat top the pressure is highest, and the gap beside it is that of the lower ground.
+const NEAR_CENTRE: f64 = 0.02;
+
+/// Whether heights jump at an edge with these pressures of the last two elements inside and this ratio as in
+/// [`Edge::new`].
+fn is_jump([pressure, inside]: [f64; 2], gap_ratio: f64) -> bool {
+    // With the root of the distance, the ratio of the squares is that of 0.02 to 1.02 at most.
+    let is_high = inside > 0.0 && pressure > inside;
+    is_high && Edge::new(gap_ratio).is_some_and(|edge| edge.position() < NEAR_CENTRE)
 }
 
 impl Default for EdgeSums {
@@ -133,13 +152,18 @@ impl EdgeSums {
                 positions[place] = self.add_sharp(at(0, 0)[1], at(dx, dy)[1]).unwrap_or(0.5);
                 continue;
             }
+            let (side, inside) = (if dy == 0 { sides[0] } else { sides[1] }, at(-dx, -dy)[0]);
+            if is_jump([pressure, inside], at(dx, dy)[1] / (pressure * side)) {
+                self.jumps += 1;
+                self.at_jumps += pressure * pressure * side;
+                continue;
+            }
             if is_thin_rim {
                 self.thin += 1;
             } else {
                 self.squares += pressure * pressure;
-                self.next_squares += at(-dx, -dy)[0].powi(2);
+                self.next_squares += inside.powi(2);
             }
-            let side = if dy == 0 { sides[0] } else { sides[1] };
             let ratios = [1, 2].map(|steps| at(steps * dx, steps * dy)[1] / (pressure * side));
             positions[place] = self.add_smooth(ratios).unwrap_or(0.5);
         }
@@ -231,28 +255,30 @@ impl EdgeSums {
 
     /// The sums as ranks exchange them. Counts are exact.
     pub(crate) fn to_values(self) -> Values {
-        let Self { n_contact, edges, diagonals, known, sharp, known_sharp, thin, hidden, turns, positions, .. } = self;
+        let Self {
+            n_contact, edges, diagonals, known, sharp, known_sharp, thin, hidden, jumps, turns, positions, ..
+        } = self;
         let Self { shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares, .. } = self;
         let Self { next_squares, thin_rims, thin_rims_squared, differences, second_differences, .. } = self;
-        let Self { hidden_rises, at_border, length, .. } = self;
-        let counts = [n_contact, edges, diagonals, known[0], known[1], sharp, known_sharp, thin, hidden];
+        let Self { hidden_rises, at_border, length, at_jumps, .. } = self;
+        let counts = [n_contact, edges, diagonals, known[0], known[1], sharp, known_sharp, thin, hidden, jumps];
         let sums = [shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares];
         let of_pressures = [next_squares, thin_rims, thin_rims_squared, differences, second_differences];
         let counts = counts.into_iter().map(|n| n as f64).chain([turns as f64]);
         let mut values = counts
             .chain(sums)
             .chain(of_pressures)
-            .chain([hidden_rises, at_border, length])
+            .chain([hidden_rises, at_border, length, at_jumps])
             .chain(positions.map(f64::from));
         std::array::from_fn(|_| values.next().unwrap_or_default())
     }
 
     /// The sums from [`EdgeSums::to_values`].
     pub(crate) fn from_values(values: &Values) -> Self {
-        let [n_contact, edges, diagonals, first, second, sharp, known_sharp, thin, hidden] =
+        let [n_contact, edges, diagonals, first, second, sharp, known_sharp, thin, hidden, jumps] =
             std::array::from_fn(|i| values[i] as usize);
         let [shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares] =
-            std::array::from_fn(|i| values[10 + i]);
+            std::array::from_fn(|i| values[11 + i]);
         let [
             next_squares,
             thin_rims,
@@ -262,7 +288,8 @@ impl EdgeSums {
             hidden_rises,
             at_border,
             length,
-        ] = std::array::from_fn(|i| values[17 + i]);
+            at_jumps,
+        ] = std::array::from_fn(|i| values[18 + i]);
         Self {
             n_contact,
             edges,
@@ -273,6 +300,8 @@ impl EdgeSums {
             sharp,
             known_sharp,
             thin,
+            jumps,
+            at_jumps,
             shift_of_sharp,
             steps,
             pressure,
@@ -285,7 +314,7 @@ impl EdgeSums {
             second_differences,
             hidden,
             hidden_rises,
-            turns: values[9] as isize,
+            turns: values[10] as isize,
             at_border,
             length,
             positions: std::array::from_fn(|i| values[N_VALUES + i] as u32),
@@ -337,9 +366,9 @@ impl EdgeSums {
         if n > 0.0 { sum(|a, b| (a - b).powi(2)) / n - 1.0 } else { 0.0 }
     }
 
-    /// Number of edges that are not sharp.
+    /// Number of edges where the pressure vanishes.
     pub(crate) fn smooth(&self) -> usize {
-        self.edges - self.sharp
+        self.edges - self.sharp - self.jumps
     }
 }
 
@@ -400,6 +429,13 @@ mod tests {
             sums.hidden
         };
         assert_eq!([0.01, 0.1, 0.3].map(hidden), [1, 1, 0]);
+    }
+
+    /// The pressure of a stamp rises to its edge, and that of other contacts falls to zero.
+    #[test]
+    fn heights_jump_at_the_edge_of_a_stamp() {
+        assert!(is_jump([3.0, 2.0], 1e3) && !is_jump([3.0, 2.0], 0.1));
+        assert!(!is_jump([1.0, 2.0], 1e3) && !is_jump([1.0, 0.0], 1e3) && !is_jump([3.0, 2.0], f64::NAN));
     }
 
     #[test]
