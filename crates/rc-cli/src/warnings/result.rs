@@ -59,7 +59,7 @@ fn maximum(pressure: f64, contact: &ContactSetup) -> Option<Warning> {
 }
 
 /// Part of the contact edges where heights jump above which the contact area depends on the samples.
-const MANY_JUMPS: f64 = 0.05;
+const MANY_JUMPS: f64 = 0.25;
 
 fn jumps(part: f64) -> Option<Warning> {
     let text = || {

@@ -157,7 +157,7 @@ fn of_thin_rims(area: &ContactArea, plastic: Option<&PlasticEdges>) -> f64 {
 const OF_CHANGE: f64 = 0.4;
 
 /// Part of edges where heights jump, and the pressure is singular, above which the rms pressure has no limit.
-const MANY_JUMPS: f64 = 0.05;
+const MANY_JUMPS: f64 = 0.25;
 
 /// Estimated error of the rms pressure, see [`Observables::rms_pressure_error`].
 fn rms_pressure_error(
