@@ -85,7 +85,7 @@ class Result:
     #: Rms pressure (Pa), best estimate.
     rms_pressure_corrected: float
     #: Estimated error of ``rms_pressure_corrected`` (Pa). ``None`` where contact reaches a free border, because the
-    #: rms of the singular pressure has no limit. ``None`` in full contact that was solved on one grid.
+    #: rms of the singular pressure has no limit. ``None`` in full contact on one grid with the kernel ``spectral``.
     rms_pressure_error: float | None
     #: Maximum pressure (Pa).
     max_pressure: float

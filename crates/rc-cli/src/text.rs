@@ -39,12 +39,10 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
         ("penetration", penetration),
         ("mean gap", measured(s.mean_gap, s.mean_gap_error, "m")),
         ("stiffness", stiffness(s)),
+        ("conductance", conductance(s)),
         ("elastic energy", engineering(s.elastic_energy, "J")),
         ("certificate", certificate_line(s)),
     ];
-    if let Some(conductance) = conductance(s) {
-        lines.insert(9, ("conductance", conductance));
-    }
     if let Some(plastic) = plastic(s) {
         lines.insert(4, ("plastic area", plastic));
     }
@@ -77,14 +75,13 @@ pub(crate) fn plastic(s: &Summary) -> Option<String> {
 }
 
 /// Text of the electrical and thermal conductance.
-///
-/// `None` on a layer, whose stiffness does not give the conductance.
-fn conductance(s: &Summary) -> Option<String> {
-    match (s.contact_conductance, s.contact_stiffness) {
-        (Some(value), _) => Some(format!("{} 1/m times the conductivity", digits(value, 4))),
-        (None, Some(_)) => None,
-        (None, None) => Some("infinite".into()),
-    }
+fn conductance(s: &Summary) -> String {
+    let Some(value) = s.contact_conductance else { return "infinite".into() };
+    let error = s.contact_conductance_error.map_or_else(String::new, |error| format!(" ± {}", digits(error, 1)));
+    let of_bodies = s
+        .conductance
+        .map_or_else(String::new, |value| format!(", here {} (unit of the conductivity per m)", digits(value, 4)));
+    format!("({}{error}) 1/m times the conductivity{of_bodies}", digits(value, 4))
 }
 
 /// Lines of the permeances and constrictions of a flow.

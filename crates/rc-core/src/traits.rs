@@ -100,7 +100,7 @@ impl Default for EdgeBias {
             per_second_difference: 0.0249,
             per_edge_error: 0.0,
             per_difference_error: 0.006,
-            gap_errors: [0.029, 0.13],
+            gap_errors: [0.028, 0.12],
         }
     }
 }
@@ -159,6 +159,13 @@ pub trait Kernel: Sync {
     /// displacement from [`Kernel::symbol`], which is zero at k = 0. The half-space returns `None`: its mean
     /// displacement is not finite and is left out (Eq. 3).
     fn uniform_displacement(&self) -> Option<f64> {
+        None
+    }
+
+    /// The half-space on the same elements, or `None` if the kernel itself is that of a half-space.
+    ///
+    /// Current between contact spots spreads in a half-space as its displacement does, whatever else is below them.
+    fn half_space(&self) -> Option<&dyn Kernel> {
         None
     }
 

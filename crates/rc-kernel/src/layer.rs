@@ -146,13 +146,17 @@ impl Kernel for LoveLayer {
         let (shift, springs) = (0.105 * (-1.43 * thickness).exp(), (-thickness / 2.2).exp());
         EdgeBias {
             per_edge: half_space.per_edge + shift,
-            per_edge_error: half_space.per_edge_error + 0.5 * shift + 0.012 * (-thickness / 4.0).exp(),
+            per_edge_error: half_space.per_edge_error + 0.4 * shift + 0.01 * (-thickness / 4.0).exp(),
             per_difference: half_space.per_difference + 0.12 * springs,
             per_second_difference: half_space.per_second_difference - 0.08 * springs,
-            per_difference_error: half_space.per_difference_error + 0.09 * (-thickness / 3.0).exp(),
+            per_difference_error: half_space.per_difference_error + 0.07 * (-thickness / 3.0).exp(),
             gap_errors: half_space.gap_errors.map(|error| error * stiffening(thickness)),
             ..half_space
         }
+    }
+
+    fn half_space(&self) -> Option<&dyn Kernel> {
+        Some(&Love)
     }
 
     fn uniform_displacement(&self) -> Option<f64> {
@@ -214,6 +218,10 @@ impl Kernel for SpectralLayer {
         })
     }
 
+    fn half_space(&self) -> Option<&dyn Kernel> {
+        Some(&Spectral)
+    }
+
     fn uniform_displacement(&self) -> Option<f64> {
         Some(self.0.uniform_displacement())
     }
@@ -228,7 +236,7 @@ impl Kernel for SpectralLayer {
         EdgeBias {
             per_edge: half_space.per_edge + shift,
             per_edge_error: half_space.per_edge_error + shift,
-            per_difference_error: 0.03 * (-thickness / 6.0).exp(),
+            per_difference_error: 0.018 * (-thickness / 6.0).exp(),
             gap_errors: half_space.gap_errors.map(|error| error * stiffening(thickness)),
             ..half_space
         }

@@ -36,7 +36,7 @@ impl Kernel for Spectral {
             per_second_difference: 0.0,
             per_edge_error: 0.0,
             per_difference_error: 0.0,
-            gap_errors: [0.001, 0.11],
+            gap_errors: [0.001, 0.095],
         }
     }
 

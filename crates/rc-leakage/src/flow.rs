@@ -13,6 +13,7 @@ use crate::flux::Flux;
 use crate::multigrid::Multigrid;
 use crate::network::{Axis, Network};
 use crate::tree::SpanningTree;
+use crate::variants::{coarser, error_bar, opened};
 
 /// Accuracy and limits of the computation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +24,7 @@ pub struct LeakageParams {
     pub conservation: f64,
     /// Maximum number of iterations of one flow.
     pub max_iterations: usize,
-    /// Whether the flow is also computed on every second element along both axes.
+    /// Whether the flow is also computed on three grids of half the resolution.
     ///
     /// This gives the error bar of the grid.
     pub half_grid: bool,
@@ -54,10 +55,14 @@ pub struct Flow {
     /// It is 0 without percolation. It is an upper bound of the permeance of the network, by the principle of
     /// Dirichlet; see [`FlowInfo::error`].
     pub permeance: f64,
-    /// Estimated error of the grid, the difference from the permeance of every second element.
+    /// Error bar of the grid, in λ³. It holds for about 98 % of resolved rough contacts.
     ///
-    /// `None` without [`LeakageParams::half_grid`], without percolation, or if the flow on every second element does
-    /// not converge. Also `None` if a side has an odd number of elements, or fewer than four.
+    /// It is half of the range of the permeances on the grid and on three grids of half the resolution: every second
+    /// element, those diagonally between, and means of two by two elements. If some of these are 0, it is the whole
+    /// range. For a permeance of 0, the range has also the permeance for edges of contacts one element further in.
+    ///
+    /// `None` without [`LeakageParams::half_grid`], if a side has fewer than four elements, or if one of these flows
+    /// does not converge.
     pub permeance_error: Option<f64>,
     /// Whether a cluster of elements out of contact winds around the cell along this axis.
     pub percolates: bool,
@@ -96,19 +101,16 @@ impl Leakage {
 /// [`LeakageError::Gap`] for a gap that is negative or not finite, [`LeakageError::NotConverged`].
 pub fn leakage(gap: &Field, params: &LeakageParams) -> Result<Leakage, LeakageError> {
     check(gap)?;
-    let of_half = LeakageParams { error: params.error.max(ERROR_OF_HALF), ..*params };
-    let half = half(gap).filter(|_| params.half_grid);
-    let half = half.and_then(|half| flows(&half, &of_half, Role::Half).ok());
+    let (half, variants) = if params.half_grid { on_coarser_grids(gap, params) } else { (None, None) };
     let solved = flows(gap, params, Role::Whole { half: half.as_ref() })?;
+    let bars = variants.map_or([None; 2], |variants| bars(gap, &solved, &variants, params));
     let flows = Axis::BOTH.map(|axis| {
         let i = axis.index();
         let (permeance, info) = solved.results[i];
-        let percolates = solved.percolates[i];
-        let of_half = half.as_ref().filter(|_| percolates).map(|half| half.results[i].0);
         Flow {
             permeance,
-            permeance_error: of_half.map(|of_half| (permeance - of_half).abs()),
-            percolates,
+            permeance_error: bars[i],
+            percolates: solved.percolates[i],
             constriction: solved.constrictions[i],
             info,
         }
@@ -116,10 +118,40 @@ pub fn leakage(gap: &Field, params: &LeakageParams) -> Result<Leakage, LeakageEr
     Ok(Leakage { flows, flux: solved.flux })
 }
 
-/// Maximum relative difference of the bounds on every second element.
+/// Maximum relative difference of the bounds on coarser grids. An error bar needs a few digits only.
+const ERROR_OF_COARSER: f64 = 1e-4;
+
+/// Maximum relative difference of the bounds where the film was closed, and contacts are made smaller.
+const ERROR_OF_OPENED: f64 = 1e-2;
+
+/// The flows on every second element, and the permeances on all coarser grids.
+fn on_coarser_grids(gap: &Field, params: &LeakageParams) -> (Option<OfGrid>, Option<Vec<[f64; 2]>>) {
+    let params = LeakageParams { error: params.error.max(ERROR_OF_COARSER), ..*params };
+    let mut grids = coarser(gap).into_iter().map(|gap| flows(&gap, &params, Role::Variant { axes: [true; 2] }).ok());
+    let half = grids.next().flatten();
+    let others: Option<Vec<[f64; 2]>> = grids.map(|flows| Some(flows?.permeances())).collect();
+    let all = half.as_ref().zip(others).map(|(half, others)| [vec![half.permeances()], others].concat());
+    (half, all)
+}
+
+/// Error bars of both permeances, from those on coarser grids.
 ///
-/// An error bar needs a few digits only.
-const ERROR_OF_HALF: f64 = 1e-6;
+/// For axes along which the film does not percolate, contacts are also made smaller.
+fn bars(gap: &Field, solved: &OfGrid, coarser: &[[f64; 2]], params: &LeakageParams) -> [Option<f64>; 2] {
+    let closed = solved.percolates.map(|percolates| !percolates);
+    let with_opened = || {
+        let params = LeakageParams { error: params.error.max(ERROR_OF_OPENED), ..*params };
+        flows(&opened(gap), &params, Role::Variant { axes: closed }).ok().map(|flows| flows.permeances())
+    };
+    let opened = if closed.contains(&true) { with_opened() } else { None };
+    [0, 1].map(|i| {
+        let mut variants: Vec<f64> = coarser.iter().map(|permeances| permeances[i]).collect();
+        if closed[i] {
+            variants.push(opened?[i]);
+        }
+        Some(error_bar(solved.results[i].0, &variants))
+    })
+}
 
 fn check(gap: &Field) -> Result<(), LeakageError> {
     let nx = gap.grid().nx();
@@ -129,22 +161,11 @@ fn check(gap: &Field) -> Result<(), LeakageError> {
     }
 }
 
-/// Every second element along both axes; `None` if a side is odd.
-fn half(gap: &Field) -> Option<Field> {
-    let grid = gap.grid();
-    let (nx, ny) = (grid.nx(), grid.ny());
-    if !(nx.is_multiple_of(2) && ny.is_multiple_of(2) && nx.min(ny) >= 4) {
-        return None;
-    }
-    let rows = (0..ny).step_by(2).flat_map(|iy| gap.row(iy).iter().copied().step_by(2));
-    Field::new(grid.with_elements(nx / 2, ny / 2).ok()?, rows.collect()).ok()
-}
-
 /// What a grid is solved for.
 #[derive(Clone, Copy)]
 enum Role<'a> {
-    /// The error bar of the grid, and a start: every second element.
-    Half,
+    /// Permeances along these axes for the error bar of the grid, and pressures for a start.
+    Variant { axes: [bool; 2] },
     /// The results. The flows start from those of every second element.
     Whole { half: Option<&'a OfGrid> },
 }
@@ -156,10 +177,16 @@ struct OfGrid {
     percolates: [bool; 2],
     constrictions: [Option<Constriction>; 2],
     flux: Option<Flux>,
-    /// Pressures of both flows, if this is the grid of every second element.
+    /// Pressures of both flows of a variant.
     ///
-    /// Empty on the whole grid, and for a flow that does not percolate.
+    /// Empty for [`Role::Whole`], and for a flow that does not percolate.
     pressures: [Vec<f64>; 2],
+}
+
+impl OfGrid {
+    fn permeances(&self) -> [f64; 2] {
+        self.results.map(|(permeance, _)| permeance)
+    }
 }
 
 /// Gaps below this multiple of the smaller critical gap count as closed.
@@ -192,7 +219,11 @@ fn flows(gap: &Field, params: &LeakageParams, role: Role<'_>) -> Result<OfGrid, 
     let mut kept: Option<(Axis, Solved)> = None;
     let mut prepared: Option<(usize, Prepared)> = None;
     let serves = |of: usize, i: usize| masks[of] == masks[i] && widest[of].total_cmp(&widest[i]).is_eq();
-    for axis in weaker_first(&constrictions).into_iter().filter(|axis| percolates[axis.index()]) {
+    let wanted = match role {
+        Role::Variant { axes } => [0, 1].map(|i| percolates[i] && axes[i]),
+        Role::Whole { .. } => percolates,
+    };
+    for axis in weaker_first(&constrictions).into_iter().filter(|axis| wanted[axis.index()]) {
         let i = axis.index();
         let (of, mut network) = match prepared.take() {
             Some((of, network)) if serves(of, i) => (of, network),
@@ -204,7 +235,7 @@ fn flows(gap: &Field, params: &LeakageParams, role: Role<'_>) -> Result<OfGrid, 
             solved.correction = Vec::new();
         }
         let start = match role {
-            Role::Half => None,
+            Role::Variant { .. } => None,
             Role::Whole { half } => {
                 half.map(|half| half.pressures[i].as_slice()).filter(|pressure| !pressure.is_empty())
             }
@@ -212,7 +243,7 @@ fn flows(gap: &Field, params: &LeakageParams, role: Role<'_>) -> Result<OfGrid, 
         let mut solved = network.solved(axis, params, start)?;
         results[i] = network.result(axis, &solved);
         match role {
-            Role::Half => pressures[i] = std::mem::take(&mut solved.pressure),
+            Role::Variant { .. } => pressures[i] = std::mem::take(&mut solved.pressure),
             Role::Whole { .. } if kept.is_none() || axis == larger(results.map(|(permeance, _)| permeance)) => {
                 kept = Some((axis, solved));
             }

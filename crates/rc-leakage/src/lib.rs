@@ -39,6 +39,7 @@ mod products;
 mod real;
 mod step;
 mod tree;
+mod variants;
 
 pub use constriction::Constriction;
 pub use cost::{BYTES_PER_ELEMENT, SECONDS_PER_ELEMENT};

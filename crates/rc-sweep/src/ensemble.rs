@@ -68,6 +68,8 @@ pub struct EnsembleMean {
     /// The mean.
     pub mean: f64,
     /// Standard error of the mean, from the variances of the levels.
+    ///
+    /// It is larger than that of known variances, by the number and the skewness of the realisations.
     pub standard_error: f64,
     /// Estimated error of the finest grid.
     pub grid_error: f64,

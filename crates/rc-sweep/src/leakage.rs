@@ -16,9 +16,9 @@ pub struct LeakageSummary {
     ///
     /// The permeance of the network is between `permeance` times (1 - this error) and `permeance`.
     pub relative_error: [f64; 2],
-    /// Estimated error of the grid (m³).
+    /// Error bar of the grid (m³), from the permeances on coarser grids.
     ///
-    /// It is the difference from the permeance of every second element.
+    /// Where nothing percolates, it is the leak on coarser grids, or through contacts that are a little smaller.
     pub permeance_error: [Option<f64>; 2],
     /// Axis with the larger permeance, `x` or `y`, or null without flow.
     ///

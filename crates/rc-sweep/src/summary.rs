@@ -78,11 +78,11 @@ pub struct Summary {
     pub rms_pressure: f64,
     /// Best estimate of the rms pressure (Pa).
     ///
-    /// It is corrected for the error of ⟨p²⟩ at edges of contacts.
+    /// It is corrected for the error of ⟨p²⟩ at edges of contacts and inside them.
     pub rms_pressure_corrected: Option<f64>,
     /// Estimated discretisation error of `rms_pressure_corrected` (Pa).
     ///
-    /// It is null where contact reaches a free border, and in full contact without a coarser grid.
+    /// It is null where contact reaches a free border, and in full contact on one grid with the kernel `spectral`.
     pub rms_pressure_error: Option<f64>,
     /// Maximum pressure (Pa).
     pub max_pressure: f64,
@@ -94,10 +94,16 @@ pub struct Summary {
     pub contact_stiffness: Option<f64>,
     /// Electrical and thermal contact conductance of the nominal area for unit conductivity (1/m).
     ///
-    /// It is dσ0/dΔ / E*. Multiply it by the harmonic mean 2 k1 k2/(k1 + k2) of the conductivities of the bodies
-    /// (Barber, Proc. R. Soc. A 459, 2003). It is null in full contact, where it is infinite, and on a layer, whose
-    /// stiffness does not determine it.
+    /// It is that of the contact spots between two half-spaces ([`Solution::conductance`]). Multiply it by the harmonic
+    /// mean 2 k1 k2/(k1 + k2) of the conductivities of the bodies. It is null in full contact, where it is infinite.
     pub contact_conductance: Option<f64>,
+    /// Estimated error of `contact_conductance` (1/m).
+    pub contact_conductance_error: Option<f64>,
+    /// Conductance of the nominal area for the given conductivities, in their unit per metre.
+    ///
+    /// It exists only with conductivities, and is null in full contact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub conductance: Option<f64>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
     /// rms height about the mean (m).
@@ -173,6 +179,8 @@ pub struct SolveContext {
     pub wall: Duration,
     /// Number of worker threads.
     pub threads: usize,
+    /// Harmonic mean of the conductivities of the bodies, if they are given.
+    pub conductivity: Option<f64>,
 }
 
 impl Summary {
@@ -181,6 +189,9 @@ impl Summary {
     pub fn of(solution: &Solution<'_>, units: Units, context: &SolveContext) -> Self {
         let (info, observables, grid) = (solution.info(), solution.observables(), solution.grid());
         let stiffness = units.pascals_per_metre(solution.stiffness());
+        // A conductance in 1/λ is a stiffness in E*/λ per E*.
+        let per_metre = |value| units.pascals_per_metre(value) / units.elasticity().e_star();
+        let conductance = Some(per_metre(solution.conductance())).filter(|value| value.is_finite());
         let (tolerance, energy_tolerance) = match solution.bound() {
             ErrorBound::Relative(value) => (Some(value), None),
             ErrorBound::Energy(value) => (None, Some(value)),
@@ -215,7 +226,9 @@ impl Summary {
             mean_gap: units.metres(observables.mean_gap),
             mean_gap_error: Some(units.metres(observables.mean_gap_error)),
             contact_stiffness: Some(stiffness).filter(|value| value.is_finite()),
-            contact_conductance: Some(stiffness / units.elasticity().e_star()).filter(|value| value.is_finite()),
+            contact_conductance: conductance,
+            contact_conductance_error: conductance.map(|_| per_metre(solution.conductance_error())),
+            conductance: conductance.zip(context.conductivity).map(|(per_unit, of_bodies)| per_unit * of_bodies),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,

@@ -240,6 +240,7 @@ where
             rms_slope: surface.rms_slope,
             wall: solved.wall,
             threads: self.threads,
+            conductivity: None,
         };
         Ok(Summary::of(&solved.solution, self.contact.units, &context).cells())
     }

@@ -42,6 +42,8 @@ pub enum WarningCode {
     Border,
     /// The grid is too coarse.
     Coarse,
+    /// Heights jump at the edges of contacts.
+    Edges,
 }
 
 impl Warning {
@@ -54,7 +56,7 @@ impl Warning {
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Units,
         Self::Slope,
         Self::Load,
@@ -66,6 +68,7 @@ impl WarningCode {
         Self::Assumed,
         Self::Border,
         Self::Coarse,
+        Self::Edges,
     ];
 
     /// What the code means, in a few words.
@@ -83,6 +86,7 @@ impl WarningCode {
             Self::Assumed => "a unit, a size or a spacing was assumed",
             Self::Border => "the map does not repeat itself",
             Self::Coarse => "the grid is too coarse",
+            Self::Edges => "heights jump at contact edges",
         }
     }
 
@@ -101,6 +105,7 @@ impl WarningCode {
             Self::Assumed => "assumed",
             Self::Border => "border",
             Self::Coarse => "coarse",
+            Self::Edges => "edges",
         }
     }
 }

@@ -59,7 +59,12 @@ impl Scene {
         let solution = problem.solve(params, &Silent)?;
         let (found, info) = (solution.observables(), solution.info());
         let values = [found.area.fraction, found.rms_pressure_corrected, found.mean_gap, info.penetration];
-        let of_energy = [1.0, 1.0, 0.5, 0.0].map(|part| part * info.iteration_error.powi(2));
+        let of_energy = [1.0, 1.0, 0.5].map(|part| part * info.iteration_error.powi(2));
+        // The penetration has the error of the mean gap, which contains the overlap of the certificate.
+        let mut of_solve = [0, 1, 2, 2].map(|i| of_energy[i] * values[i]);
+        for error in &mut of_solve[2..] {
+            *error += info.certificate.penetration * info.penetration_full_contact;
+        }
         Ok(Values {
             found: values,
             of_elements: [found.area.cells, found.rms_pressure],
@@ -69,7 +74,7 @@ impl Scene {
                 Some(found.mean_gap_error),
                 Some(solution.penetration_error()),
             ],
-            of_solve: std::array::from_fn(|i| of_energy[i] * values[i]),
+            of_solve,
             plastic: found.plastic.map_or(0.0, |plastic| plastic.fraction / found.area.fraction.max(plastic.fraction)),
             excess: solution.summit_excess(),
         })

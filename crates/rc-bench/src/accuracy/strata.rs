@@ -11,6 +11,15 @@ use crate::accuracy::scene::Family;
 const LEAST: f64 = 0.93;
 const MOST: f64 = 0.99;
 
+/// A bar that holds too often fails if it is more than the first number of times the rms error, and any bar above the
+/// second, in so many scenes.
+///
+/// Gaussian errors have 1.96. An error with a bound, such as the height of a summit between samples, may always be within
+/// a bar that is no wider.
+const WIDE: f64 = 4.0;
+const WIDEST: f64 = 10.0;
+const MANY: usize = 100;
+
 /// A stratum fails if its number of bars that hold has a smaller probability.
 const SIGNIFICANT: f64 = 1e-4;
 
@@ -88,6 +97,16 @@ fn held(ratios: &[f64]) -> usize {
     ratios.iter().filter(|ratio| **ratio <= 1.0).count()
 }
 
+/// Whether too many bars hold, or they are much wider than errors. It has the ratios of errors to bars.
+fn is_too_wide(ratios: &[f64]) -> bool {
+    let is_wider = |than: f64| ratios.len() >= MANY && than * rms(ratios) < 1.0;
+    is_wider(WIDEST) || (is_wider(WIDE) && at_least(held(ratios), ratios.len(), MOST) < SIGNIFICANT)
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+}
+
 /// One line for each bar that holds too seldom or too often in a stratum.
 ///
 /// The bars are not made for creases.
@@ -103,7 +122,7 @@ pub(super) fn faults(scenes: &[Measured]) -> Vec<String> {
             let of_mesh = ratios(&of_mesh, i);
             let fault = if at_most(held(&all), all.len(), LEAST) < SIGNIFICANT {
                 "too narrow"
-            } else if at_least(held(&of_mesh), of_mesh.len(), MOST) < SIGNIFICANT {
+            } else if is_too_wide(&of_mesh) {
                 "too wide"
             } else {
                 continue;
@@ -144,9 +163,7 @@ fn row(name: String, scenes: &[&Measured]) -> Vec<String> {
     let middle = |of: fn(&Measured) -> f64| percent(median(scenes.iter().map(|scene| of(scene).abs()).collect()));
     let mut row = vec![name, scenes.len().to_string()];
     row.extend(of_quantity(&|ratios| percent(held(ratios) as f64 / ratios.len() as f64)));
-    row.extend(of_quantity(&|ratios| {
-        number((ratios.iter().map(|ratio| ratio * ratio).sum::<f64>() / ratios.len() as f64).sqrt().recip().min(1e3))
-    }));
+    row.extend(of_quantity(&|ratios| number(rms(ratios).recip().min(1e3))));
     row.extend(rms_errors_of_area(scenes.iter().copied()).map(percent));
     row.push(middle(|scene| scene.errors[1] / scene.limits[1]));
     row.push(middle(|scene| scene.of_elements[1] / scene.limits[1]));
@@ -162,4 +179,20 @@ pub(super) fn rms_errors_of_area<'a>(scenes: impl Iterator<Item = &'a Measured>)
         sums[1] += (scene.of_elements[0] / scene.limits[0]).powi(2);
     }
     sums.map(|sum: f64| (sum / f64::max(n, 1.0)).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_are_too_wide_where_they_are_many_times_the_errors() {
+        // Errors between -1 and 1, relative to a bar of the given number of rms errors.
+        let ratios =
+            |bar: f64| (0..400).map(|i| (f64::from(i) / 200.0 - 1.0) * 3.0_f64.sqrt() / bar).collect::<Vec<_>>();
+        assert_eq!([1.96, 3.0, 12.0].map(|bar| is_too_wide(&ratios(bar))), [false, false, true]);
+        // 0.99^1000 is below the significance.
+        let many = [ratios(5.0), ratios(5.0), ratios(5.0)].concat();
+        assert!(is_too_wide(&many) && !is_too_wide(&ratios(5.0)));
+    }
 }

@@ -22,11 +22,13 @@ function sweepPage(data) {
   const gap = { key: "gap", label: "mean gap", unit: "m" };
   const stiffness = { key: "stiffness", label: "stiffness", unit: "Pa/m" };
   const conductance = { key: "conductance", label: "conductance per conductivity (1/m)" };
+  const ofBodies = { key: "of_bodies", label: "conductance (unit of the conductivity per m)" };
   const permeance = { key: "permeance", label: "permeance (m³), mean of x and y" };
   const both = ["x", "y"];
   const has = (key) => data.scenes.some(({ seeds }) => seeds.some((rows) => rows.some((row) => row[key] !== null)));
   const more = [
-    has("conductance") && sweepChart("Contact conductance against load", data, { ...pressure, log: true }, { ...conductance, log: true }, both),
+    has("of_bodies") && sweepChart("Conductance of the bodies against load", data, { ...pressure, log: true }, { ...ofBodies, log: true }, both),
+    has("conductance") && !has("of_bodies") && sweepChart("Contact conductance against load", data, { ...pressure, log: true }, { ...conductance, log: true }, both),
     has("permeance") && sweepChart("Leakage against contact area", data, area, { ...permeance, log: true }, both),
   ].filter(Boolean);
   return [

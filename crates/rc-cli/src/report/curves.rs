@@ -30,6 +30,8 @@ struct Row {
     #[serde(default)]
     contact_conductance: Option<f64>,
     #[serde(default)]
+    conductance: Option<f64>,
+    #[serde(default)]
     permeance_x: Option<f64>,
     #[serde(default)]
     permeance_y: Option<f64>,
@@ -69,8 +71,10 @@ struct Point {
     gap: f64,
     /// Stiffness; not finite in full contact.
     stiffness: Option<f64>,
-    /// Conductance (1/m); not finite in full contact.
+    /// Conductance per conductivity (1/m); not finite in full contact.
     conductance: Option<f64>,
+    /// Conductance for the given conductivities, in their unit per metre.
+    of_bodies: Option<f64>,
     /// Mean permeance of both axes (m³), if flows were computed.
     permeance: Option<f64>,
 }
@@ -172,6 +176,7 @@ impl Point {
             gap: row.mean_gap,
             stiffness: row.contact_stiffness,
             conductance: row.contact_conductance,
+            of_bodies: row.conductance,
             permeance: row.permeance_x.zip(row.permeance_y).map(|(x, y)| 0.5 * (x + y)),
         }
     }
@@ -188,6 +193,7 @@ impl Point {
             gap: mean(&|point| point.gap),
             stiffness: finite(&|point| point.stiffness),
             conductance: finite(&|point| point.conductance),
+            of_bodies: finite(&|point| point.of_bodies),
             permeance: finite(&|point| point.permeance),
         }
     }
@@ -298,6 +304,7 @@ mod tests {
             mean_gap: 1.0,
             contact_stiffness: (seed == 1).then_some(3.0),
             contact_conductance: Some(load),
+            conductance: None,
             permeance_x: Some(4.0 - load),
             permeance_y: None,
             warnings: None,

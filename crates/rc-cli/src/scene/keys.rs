@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::names::{amplitudes, boundaries, methods, truncations};
 use super::time_limit::TimeLimit;
-use super::values::{Fraction, GridSpec, Marks, ToleranceSpec};
+use super::values::{Conductivity, Fraction, GridSpec, Marks, ToleranceSpec};
 use crate::help;
 
 /// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4.
@@ -137,6 +137,12 @@ pub struct ContactKeys {
     #[arg(long, value_name = "PA", help_heading = help::PHYSICS, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hardness: Option<f64>,
+    /// Conductivities of both bodies, such as 400,50: adds the conductance of the contact
+    ///
+    /// Electrical (S/m) or thermal (W/(m K)). One value stands for both bodies.
+    #[arg(long, value_name = "K1[,K2]", help_heading = help::PHYSICS, allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub conductivity: Option<Conductivity>,
     /// love (the paper's loaded square) or spectral [default: love]
     ///
     /// love: pressure constant on each element, displacement at its centre (Eq. 5). spectral: the symbol 2/(E* q), as

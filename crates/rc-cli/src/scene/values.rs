@@ -111,6 +111,49 @@ impl<'de> Deserialize<'de> for Marks {
     }
 }
 
+/// The conductivities of both bodies in their written form: `400`, or `400,50`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conductivity(pub [f64; 2]);
+
+impl Conductivity {
+    /// Their harmonic mean 2 k1 k2/(k1 + k2), which the conductance of spots between the bodies is proportional to.
+    #[must_use]
+    pub fn mean(self) -> f64 {
+        let [k1, k2] = self.0;
+        2.0 / (k1.recip() + k2.recip())
+    }
+}
+
+impl fmt::Display for Conductivity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{}", self.0[0], self.0[1])
+    }
+}
+
+impl FromStr for Conductivity {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let value = |word: &str| word.trim().parse::<f64>().ok().filter(|k| k.is_normal() && *k > 0.0);
+        let (k1, k2) = text.split_once(',').unwrap_or((text, text));
+        value(k1).zip(value(k2)).map(|(k1, k2)| Self([k1, k2])).ok_or_else(|| {
+            format!("conductivities are one or two positive numbers such as 400, or 400,50, not '{text}'")
+        })
+    }
+}
+
+impl Serialize for Conductivity {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Conductivity {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        number_or_text(deserializer, "a number such as 400, or \"400,50\"")
+    }
+}
+
 /// The tolerance in its written form: a number or `auto`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ToleranceSpec {

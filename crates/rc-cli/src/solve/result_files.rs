@@ -25,7 +25,7 @@ use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
 use crate::scene::resolve::ContactSetup;
-use crate::scene::values::GridSpec;
+use crate::scene::values::{Conductivity, GridSpec};
 use crate::scene::wave_file::{WAVES_FILE, WaveFile};
 use crate::warnings::result::after;
 
@@ -81,13 +81,12 @@ impl ResultFiles<'_> {
             rms_slope,
             wall,
             threads,
+            conductivity: self.contact.keys.conductivity.map(Conductivity::mean),
         };
         let leakage = self.flow.map(|flow| flow.summary.clone());
         let summary = Summary::of(self.solution, self.contact.units, &context);
-        // Only on a half-space are conduction and stiffness the same problem.
-        let contact_conductance = summary.contact_conductance.filter(|_| self.contact.layer.is_none());
         let warnings = self.all_warnings();
-        Summary { leakage, contact_conductance, warnings, ..summary }
+        Summary { leakage, warnings, ..summary }
     }
 
     /// The warnings from before the solve, and those that only the solution shows.

@@ -4,7 +4,7 @@ use rc_core::Boundary;
 use rc_core::quantity::{digits, engineering};
 use rc_solver::{Control, Solution};
 use rc_sweep::Warning;
-use rc_sweep::WarningCode::{Coarse, Load};
+use rc_sweep::WarningCode::{Coarse, Edges, Load};
 
 use super::contact::mean_pressure;
 use super::single_spots::SingleSpots;
@@ -32,6 +32,7 @@ pub(crate) fn after(solution: &Solution<'_>, contact: &ContactSetup, is_map: boo
     }
     if is_map {
         found.extend(single(solution, contact.boundary));
+        found.extend(jumps(solution.area().part_of_jumps()));
     }
     found
 }
@@ -55,6 +56,20 @@ fn maximum(pressure: f64, contact: &ContactSetup) -> Option<Warning> {
         )
     };
     (pressure > LARGE_PRESSURE).then(|| Warning::new(Load, text()))
+}
+
+/// Part of the contact edges where heights jump above which the contact area depends on the samples.
+const MANY_JUMPS: f64 = 0.25;
+
+fn jumps(part: f64) -> Option<Warning> {
+    let text = || {
+        format!(
+            "heights jump at {} % of the contact edges, which lie anywhere between two points of the map; the contact area \
+             is counted there",
+            digits(100.0 * part, 2)
+        )
+    };
+    (part > MANY_JUMPS).then(|| Warning::new(Edges, text()))
 }
 
 fn single(solution: &Solution<'_>, boundary: Boundary) -> Option<Warning> {

@@ -52,10 +52,53 @@ fn where_nothing_percolates_permeances_are_zero() {
     assert!(open["permeance_x"].parse::<f64>().is_ok_and(|value| value > 0.0), "{open:?}");
     assert_eq!(closed["permeance_x"].parse::<f64>().ok(), Some(0.0), "{closed:?}");
     assert_eq!((&*open["percolates"], &*closed["percolates"]), ("true true", "false false"));
-    assert_eq!(closed["permeance_error_x"], "");
+    assert_eq!(closed["permeance_error_x"].parse::<f64>().ok(), Some(0.0), "contact is complete");
 }
 
-fn csv_rows(table: &str) -> Vec<std::collections::BTreeMap<String, String>> {
+/// Permeances and error bars along both axes of random surfaces under six loads, from 6 % contact to closed films.
+fn random_flows(place: &Place, hurst: &str, grid: &str) -> Vec<[f64; 2]> {
+    let surfaces = ["sweep", "--waves", "8", "--hurst", hurst, "--seeds", "11..18", "--rms-slope", "0.1"];
+    let loads = ["--e-star", "1e9", "--pressures", "4e6:3.2e7:6", "--leakage", "--quiet", "--grid", grid];
+    let out = format!("h{hurst}-{grid}");
+    assert_solved(&place.run(&[&surfaces[..], &loads, &["--out", &out]].concat()));
+    let rows = csv_rows(&text(&place.bytes(&format!("{out}/sweep.csv"))));
+    let of = |row: &Row, key: &str| row[key].parse().unwrap_or_else(|_| panic!("no {key}: {row:?}"));
+    let flow =
+        |row: &Row, axis: &str| [of(row, &format!("permeance_{axis}")), of(row, &format!("permeance_error_{axis}"))];
+    rows.iter().flat_map(|row| ["x", "y"].map(|axis| flow(row, axis))).collect()
+}
+
+#[test]
+fn error_bars_hold_the_permeance_of_finer_grids() {
+    let place = Place::new();
+    let (mut held, mut closed, mut ratios) = (Vec::new(), 0, Vec::new());
+    for hurst in ["0.3", "0.8"] {
+        let exact = random_flows(&place, hurst, "128");
+        for ([permeance, bar], [exact, _]) in random_flows(&place, hurst, "32").into_iter().zip(exact) {
+            let error = (permeance - exact).abs();
+            if permeance > 0.0 || exact > 0.0 {
+                held.push(error <= bar);
+                ratios.push(bar / error);
+            } else {
+                closed += 1;
+            }
+        }
+    }
+    let share = held.iter().filter(|held| **held).count() as f64 / held.len() as f64;
+    ratios.sort_by(f64::total_cmp);
+    let median = ratios[ratios.len() / 2];
+    assert!(held.len() + closed == 192 && held.len() > 120, "{} leak", held.len());
+    assert!(
+        share >= 0.95 && median < 5.0,
+        "a share of {share} of {} bars holds, with a median of {median}",
+        held.len()
+    );
+}
+
+/// A row of a table by the names of its columns.
+type Row = std::collections::BTreeMap<String, String>;
+
+fn csv_rows(table: &str) -> Vec<Row> {
     let mut lines = table.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
     let names = lines.next().unwrap_or_default();
     // The reason of the method may have commas in quotes. The columns of the flow are the last ones.

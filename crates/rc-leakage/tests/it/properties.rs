@@ -162,6 +162,26 @@ fn where_nothing_percolates_nothing_flows() {
 }
 
 #[test]
+fn a_closed_film_has_the_leak_through_smaller_contacts_as_its_error_bar() {
+    for n in [16, 17] {
+        let grid = Grid::square(n).expect("a grid");
+        let bars = |gap: &dyn Fn(usize, usize) -> f64| {
+            let gap = Field::new(grid, (0..n * n).map(|i| gap(i % n, i / n)).collect()).expect("a field");
+            let flows = solved(&gap).flows;
+            assert!(flows.iter().all(|flow| flow.permeance.to_bits() == 0), "{n}: it leaks");
+            flows.map(|flow| flow.permeance_error.expect("a bar"))
+        };
+        // Two parts of a channel along x meet at corners of elements only.
+        let [x, _] = bars(&|ix, iy| if iy == 4 + usize::from(ix > 7) { 0.1 } else { 0.0 });
+        assert!(x > 0.0 && x < 1e-3, "{n}: {x}");
+        // Contact of many elements on all sides stays closed, and so does a film without a gap.
+        let pool = |ix: usize, iy: usize| if ix.abs_diff(8) < 3 && iy.abs_diff(8) < 3 { 0.1 } else { 0.0 };
+        assert_eq!(bars(&pool).map(f64::to_bits), [0; 2], "{n}: a pool");
+        assert_eq!(bars(&|_, _| 0.0).map(f64::to_bits), [0; 2], "{n}: full contact");
+    }
+}
+
+#[test]
 fn a_gap_that_is_not_one_is_refused_with_its_place() {
     for bad in [-1e-300, f64::NAN, f64::INFINITY] {
         let mut gap = Field::from_fn(Grid::new(4, 3).expect("a grid"), |_| 1.0);

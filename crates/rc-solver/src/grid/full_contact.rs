@@ -9,20 +9,38 @@ use crate::descent::info::{GridSolution, LevelInfo, SolveInfo, Status};
 use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
 use crate::grid::operators::SymbolOperator;
 use crate::grid::uniform_operator::UniformOperator;
-use crate::problem::checked::Problem;
+use crate::problem::checked::{BELOW_FULL, Problem};
 use crate::problem::control::Control;
 use crate::problem::tolerance::ErrorBound;
+
+/// A mean pressure that may close every gap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum MeanPressure {
+    /// This one, in E*.
+    Given(f64),
+    /// The least that does.
+    Least,
+}
+
+/// Part of the least pressure that is added to it, so that all elements press.
+const ABOVE_LEAST: f64 = 1e-9;
 
 /// The mean pressure that closes every gap at the load of `problem`, if any.
 ///
 /// Under pressure control it is the prescribed one. On a layer, a penetration beyond full contact of the half-space
-/// compresses the layer. The mean pressure is then the one of this compression.
-pub(crate) fn mean_pressure(problem: &Problem) -> Option<f64> {
+/// compresses the layer. The mean pressure is then the one of this compression. On a half-space, the penetration of full
+/// contact is that of every load from the least on.
+pub(crate) fn mean_pressure(problem: &Problem) -> Option<MeanPressure> {
     match problem.bounds.control {
-        Control::MeanPressure(value) => Some(value),
+        Control::MeanPressure(value) => Some(MeanPressure::Given(value)),
+        Control::Penetration(depth) if problem.support.is_none() => {
+            let is_elastic = problem.bounds.hardness.is_infinite();
+            let full_contact = problem.h_max - problem.h_mean;
+            (is_elastic && depth >= full_contact * (1.0 - 2.0 * BELOW_FULL)).then_some(MeanPressure::Least)
+        }
         Control::Penetration(depth) => {
             let pressure = (depth - (problem.h_max - problem.h_mean)) / problem.support.compliance;
-            (pressure > 0.0 && pressure.is_finite()).then_some(pressure)
+            (pressure > 0.0 && pressure.is_finite()).then_some(MeanPressure::Given(pressure))
         }
     }
 }
@@ -35,16 +53,22 @@ pub(crate) fn mean_pressure(problem: &Problem) -> Option<f64> {
 pub(crate) fn solve(
     (heights, coarser): (&Field, &[Field]),
     kernel: &dyn Kernel,
-    mean_pressure: f64,
+    mean_pressure: MeanPressure,
     problem: &Problem,
     bound: ErrorBound,
 ) -> Option<GridSolution> {
-    if proves_partial_contact(heights, kernel, mean_pressure) || shows_partial_contact(coarser, kernel, mean_pressure) {
+    if let MeanPressure::Given(mean) = mean_pressure
+        && (proves_partial_contact(heights, kernel, mean) || shows_partial_contact(coarser, kernel, mean))
+    {
         return None;
     }
     let grid = heights.grid();
     let mut inverse = fluctuation(heights, kernel, problem.h_mean);
     let block = inverse.layout().len();
+    let mean_pressure = match mean_pressure {
+        MeanPressure::Given(mean) => mean,
+        MeanPressure::Least => -(1.0 + ABOVE_LEAST) * least_of(&inverse, heights),
+    };
     let mut pressure = Field::zeros(grid);
     let extremes = read_blocks(&inverse, pressure.values_mut().chunks_mut(block), |p, rows| {
         let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -92,10 +116,14 @@ const CLEARLY: f64 = 2.0;
 /// contact.
 fn shows_partial_contact(coarser: &[Field], kernel: &dyn Kernel, mean_pressure: f64) -> bool {
     let Some(heights) = coarser.iter().find(|heights| heights.grid().len() <= SKETCH) else { return false };
-    let fluctuation = fluctuation(heights, kernel, heights.mean());
+    least_of(&fluctuation(heights, kernel, heights.mean()), heights) < -CLEARLY * mean_pressure
+}
+
+/// Minimum of a fluctuation on the grid of `heights`.
+fn least_of(fluctuation: &SymbolOperator, heights: &Field) -> f64 {
     let rows = heights.values().chunks(fluctuation.layout().len());
-    let least = read_blocks(&fluctuation, rows, |_, rows| rows.iter().copied().fold(f64::INFINITY, f64::min));
-    least.into_iter().fold(f64::INFINITY, f64::min) < -CLEARLY * mean_pressure
+    let least = read_blocks(fluctuation, rows, |_, rows| rows.iter().copied().fold(f64::INFINITY, f64::min));
+    least.into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// Whether one of two Fourier coefficients proves that contact is partial.

@@ -2,7 +2,9 @@
 //!
 //! It may outlive the caller's kernel or operator.
 
-use rc_core::{Boundary, EdgeBias, Field, Grid, Operator};
+use rayon::prelude::*;
+use rc_core::{Boundary, EdgeBias, Field, Grid, Kernel, Operator};
+use rc_kernel::Spectral;
 
 use crate::descent::contact_element::ContactElement;
 use crate::descent::info::{GridSolution, SolveInfo, Status};
@@ -26,6 +28,8 @@ pub(crate) enum Response<'a> {
     Outlived {
         /// dσ0/dΔ, in E*/λ.
         stiffness: f64,
+        /// That of the contact spots, as [`Solved::conductance`].
+        conductance: f64,
         /// v = L p, in λ.
         displacement: Field,
         /// The shift of contact edges.
@@ -46,11 +50,12 @@ impl Response<'_> {
         };
         match (self, shared) {
             (_, Some(kernel)) => Response::Kernel(OwnedKernel::Shared(kernel)),
-            (Self::Outlived { stiffness, displacement, bias, boundary }, _) => {
-                Response::Outlived { stiffness, displacement, bias, boundary }
+            (Self::Outlived { stiffness, conductance, displacement, bias, boundary }, _) => {
+                Response::Outlived { stiffness, conductance, displacement, bias, boundary }
             }
             (response, _) => Response::Outlived {
                 stiffness: response.stiffness(solution, hardness),
+                conductance: response.conductance(solution),
                 displacement: response.displacement(&solution.pressure),
                 bias: response.edge_bias(solution.pressure.grid()),
                 boundary: response.boundary(solution.pressure.grid()),
@@ -82,7 +87,6 @@ impl Response<'_> {
     pub(crate) fn stiffness(&self, solution: &GridSolution, hardness: f64) -> f64 {
         let is_full = solution.status == Status::FullContact;
         match self {
-            Self::Kernel(kernel) if is_full => kernel.get().uniform_displacement().unwrap_or(0.0).recip(),
             Self::Kernel(kernel) => {
                 let converged = solution.status != Status::NotConverged;
                 contact_stiffness(&solution.pressure, hardness, kernel.get(), converged)
@@ -90,6 +94,19 @@ impl Response<'_> {
             Self::Operator(_) if is_full => f64::INFINITY,
             Self::Operator(operator) => stiffness_with_operator(&solution.pressure, *operator),
             Self::Outlived { stiffness, .. } => *stiffness,
+        }
+    }
+
+    /// dσ0/dΔ if a half-space is held down by all contact spots of `solution`, in E*/λ. It is infinite in full contact.
+    pub(crate) fn conductance(&self, solution: &GridSolution) -> f64 {
+        let of_spots = |kernel: &dyn Kernel| {
+            let converged = solution.status != Status::NotConverged;
+            contact_stiffness(&solution.pressure, f64::INFINITY, kernel.half_space().unwrap_or(kernel), converged)
+        };
+        match self {
+            Self::Kernel(kernel) => of_spots(kernel.get()),
+            Self::Operator(_) => of_spots(&Spectral),
+            Self::Outlived { conductance, .. } => *conductance,
         }
     }
 
@@ -114,6 +131,23 @@ pub(crate) struct GridSolved<'a> {
     pub(crate) response: Response<'a>,
     /// The limit of the pressure. Infinite for an elastic contact.
     pub(crate) hardness: f64,
+}
+
+impl<'a> GridSolved<'a> {
+    /// The solution for the caller. In an elastic contact, overlaps that the tolerance has left become gaps of zero.
+    ///
+    /// The certificate holds their size.
+    pub(crate) fn new(mut solution: GridSolution, response: Response<'a>, hardness: f64) -> Self {
+        if hardness.is_infinite() {
+            solution.gap.values_mut().par_iter_mut().for_each(|gap| *gap = gap.max(0.0));
+        }
+        // As on tiles, full contact may have been found by the iteration, and may be plastic.
+        let is_periodic = response.boundary(solution.pressure.grid()) == Boundary::Periodic;
+        if solution.status == Status::Converged && is_periodic && solution.pressure.min() > 0.0 {
+            solution.status = Status::FullContact;
+        }
+        Self { solution, response, hardness }
+    }
 }
 
 impl Solved for GridSolved<'_> {
@@ -149,6 +183,12 @@ impl Solved for GridSolved<'_> {
 
     fn stiffness(&self) -> f64 {
         self.response.stiffness(&self.solution, self.hardness)
+    }
+
+    fn conductance(&self) -> Option<f64> {
+        let is_half_space = matches!(&self.response, Response::Kernel(kernel) if kernel.get().half_space().is_none());
+        let is_stiffness = is_half_space && self.solution.pressure.max() < self.hardness;
+        (!is_stiffness).then(|| self.response.conductance(&self.solution))
     }
 
     fn stored(&self) -> Option<[&Field; 2]> {

@@ -75,6 +75,14 @@ pub(crate) struct Problem {
     pub(crate) support: Support,
 }
 
+/// Relative rounding of a printed penetration.
+const ROUNDED: f64 = 1e-6;
+
+/// Part of the penetration of full contact by which an iteration stays below it.
+///
+/// From there on, the penetration does not determine the pressure.
+pub(crate) const BELOW_FULL: f64 = 1e-11;
+
 /// Depth of [`Problem::out_of_reach`], in units of a bound of heights and displacements.
 const OUT_OF_REACH: f64 = 100.0;
 
@@ -122,7 +130,11 @@ impl Problem {
                 }
             }
             // Also refuses every penetration into a flat surface. Its full contact is at zero.
-            Control::Penetration(value) if support.is_none() && !(value > 0.0 && value < full_contact) => {
+            // A printed penetration of full contact may be rounded upward.
+            Control::Penetration(value)
+                if support.is_none()
+                    && !(value > 0.0 && value <= full_contact * (1.0 + ROUNDED) && full_contact > 0.0) =>
+            {
                 return Err(ProblemError::Penetration { value, full_contact });
             }
             Control::Penetration(value) if !(value > 0.0 && value.is_finite()) => {
@@ -130,6 +142,12 @@ impl Problem {
             }
             Control::MeanPressure(_) | Control::Penetration(_) => {}
         }
+        let bounds = match control {
+            Control::Penetration(value) if support.is_none() && hardness.is_infinite() => {
+                Bounds { control: Control::Penetration(value.min(full_contact * (1.0 - BELOW_FULL))), hardness }
+            }
+            _ => bounds,
+        };
         Ok(Self { bounds, h_max, h_mean, h_range, measure: params.bound.measure(), support })
     }
 

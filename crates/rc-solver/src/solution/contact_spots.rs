@@ -3,7 +3,7 @@
 use rc_core::{Boundary, EdgeBias, Field, Grid};
 
 use crate::solution::contact_area::area::ContactArea;
-use crate::solution::contact_area::area::around;
+use crate::solution::contact_area::area::{SMALLEST, around, distance};
 use crate::solution::contact_area::edge_sums::EdgeSums;
 
 /// One connected part of the contact.
@@ -93,17 +93,15 @@ impl ContactSpot {
         let grid = pressure.grid();
         let (nx, ny) = (grid.nx(), grid.ny());
         let sides = grid.spacing().into();
-        let mut all = EdgeSums::default();
         let spot = |elements: Vec<usize>| {
             let (mut sums, mut load) = (EdgeSums::default(), 0.0);
             for &element in &elements {
                 load += pressure.values()[element];
                 let at = [element % nx, element / nx];
                 let around = around([pressure.values(), gap.values()], [nx, ny], at, boundary);
-                sums.add(sides, hardness, &around);
+                sums.add(sides, hardness, &around, &distance([nx, ny], at, boundary));
             }
             let area = ContactArea::from_sums(&[sums], grid, bias);
-            all += sums;
             Self {
                 elements: elements.len(),
                 area_fraction: area.fraction,
@@ -113,14 +111,12 @@ impl ContactSpot {
             }
         };
         let mut spots: Vec<Self> = connected(pressure, boundary).into_iter().map(spot).collect();
-        share(&mut spots, area_fraction.unwrap_or_else(|| ContactArea::from_sums(&[all], grid, bias).fraction), grid);
+        let area = || ContactArea::of_hard([pressure, gap], hardness, bias, boundary).fraction;
+        share(&mut spots, area_fraction.unwrap_or_else(area), grid);
         spots.sort_by(|a, b| b.area_fraction.total_cmp(&a.area_fraction));
         spots
     }
 }
-
-/// Smallest area of a spot, in its elements. It carries load, so it has an area.
-const SMALLEST: f64 = 0.1;
 
 /// Changes the areas of `spots` on `grid` so that they add up to `area`.
 ///

@@ -7,7 +7,7 @@ use rc_core::Field;
 /// v is the elastic displacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum GapPart {
-    /// The open gap, which is zero where plastic flow has removed the overlap.
+    /// The open gap. It is zero where plastic flow has removed an overlap, and where the tolerance has left one.
     Open,
     /// The overlap that plastic flow has removed, positive.
     Plastic,
@@ -19,8 +19,8 @@ impl GapPart {
     /// This part of `gap` where the pressure is `pressure`, of at most the `hardness`.
     pub(crate) fn of(self, gap: f64, pressure: f64, hardness: f64) -> f64 {
         match (self, pressure >= hardness) {
-            (Self::Open, true) => gap.max(0.0),
-            (Self::Open, false) | (Self::Both, _) => gap,
+            (Self::Open, _) => gap.max(0.0),
+            (Self::Both, _) => gap,
             (Self::Plastic, true) => (-gap).max(0.0),
             (Self::Plastic, false) => 0.0,
         }

@@ -18,12 +18,14 @@ pub struct Observables {
     pub rms_pressure: f64,
     /// Root mean square pressure over the cell, corrected: the best estimate.
     ///
-    /// The correction adds the part of ⟨p²⟩ that elements at contact edges miss ([`ContactArea::missing_square`]).
+    /// The correction adds the part of ⟨p²⟩ that elements miss ([`ContactArea::missing_square`]): at contact edges,
+    /// inside contacts, and in elastic rims thinner than an element.
     pub rms_pressure_corrected: f64,
     /// Estimated discretisation error of `rms_pressure_corrected`.
     ///
-    /// `None` in full contact without a coarser level to compare with, and where contact reaches a free border. The rms
-    /// of the singular pressure there has no limit.
+    /// `None` where contact reaches a free border, and where heights jump at its edges, because the rms of the singular
+    /// pressure there has no limit. With a
+    /// kernel without an error inside contacts, it is `None` in full contact without a coarser level to compare with.
     pub rms_pressure_error: Option<f64>,
     /// Maximum pressure.
     pub max_pressure: f64,
@@ -50,7 +52,7 @@ impl Observables {
         let plastic = hardness.is_finite().then(|| PlasticEdges::of(fields, hardness, bias, boundary));
         let pressure = &solution.pressure;
         let rms = parallel::rms(pressure.values(), pressure.grid().nx());
-        Self::new(&solution.info, (area, plastic), rms, parallel::maximum(pressure.values(), 0.0))
+        Self::new(&solution.info, (area, plastic), hardness, [rms, parallel::maximum(pressure.values(), 0.0)])
     }
 
     /// Observables from the contact area and the pressures of the elements.
@@ -59,8 +61,8 @@ impl Observables {
     pub(crate) fn new(
         info: &SolveInfo,
         (area, plastic): (ContactArea, Option<PlasticEdges>),
-        rms_pressure: f64,
-        max_pressure: f64,
+        hardness: f64,
+        [rms_pressure, max_pressure]: [f64; 2],
     ) -> Self {
         // Where the pressure leaves q = H - p to the hardness, edges of q are like other edges. p² is H² - 2 H q + q².
         let rest = plastic.map(|edges| edges.rest);
@@ -71,14 +73,17 @@ impl Observables {
             + of_thin_rims(&area, plastic.as_ref());
         let area = ContactArea { missing_square, ..area };
         let flow = plastic.map_or(0.0, |edges| edges.contact.mean_gap);
+        // The contact carries at most the hardness, and the plastic part is in it.
+        let least = plastic.map_or(0.0, |edges| edges.contact.fraction.max(info.mean_pressure / hardness).min(1.0));
+        let area = ContactArea { fraction: area.fraction.max(least), ..area };
         let bars = plastic.map(|edges| edges.contact.with_wider_bars(area));
         let observables = Self {
             area: bars.map_or(area, |(area, _)| area),
             rms_pressure,
             rms_pressure_corrected: corrected(rms_pressure, &area),
-            rms_pressure_error: rms_pressure_error(info, (&area, rest.as_ref()), rms_pressure),
+            rms_pressure_error: rms_pressure_error(info, (&area, rest.as_ref()), [rms_pressure, max_pressure]),
             max_pressure,
-            mean_gap: info.mean_gap() + flow,
+            mean_gap: (info.mean_gap() + flow).max(0.0),
             mean_gap_error: mean_gap_error(info, &area, rms_pressure)
                 .hypot(of_rest(&|rest| mean_gap_error(info, rest, rms_pressure))),
             elastic_energy: info.elastic_energy,
@@ -120,25 +125,29 @@ const PRESSURE_OF_SOLVE: f64 = 1.0;
 const GAP_OF_SOLVE: f64 = 0.5;
 
 /// 95 % error of the squared pressure at one independent edge. The mean over few edges scatters.
-const SQUARE_SCATTER: f64 = 0.41;
+const SQUARE_SCATTER: f64 = 0.39;
 
 /// 95 % errors of the parts of [`ContactArea::missing_square`], relative to them.
 ///
 /// They are the parts of edges, of elements in lone rows, as a multiple of their squares, and of thin rims.
 const ERROR_OF_SQUARES: f64 = 0.6;
 const ERROR_OF_LONE: f64 = 0.8;
-const ERROR_OF_THIN_RIMS: f64 = 0.5;
+const ERROR_OF_THIN_RIMS: f64 = 0.2;
 
-/// Part of [`Rim::thin_rims`] that ⟨p²⟩ misses, as a linear function of the plastic part of the contact.
+/// 95 % error of [`Rim::thin_rims`] in units of [`Rim::scatter_of_thin`].
+const SCATTER_OF_THIN: f64 = 1.4;
+
+/// Part of [`Rim::thin_rims`] that ⟨p²⟩ misses if all edges are thin and almost all of the contact is plastic.
 ///
-/// Where almost all of the contact is plastic, the pressure of an element in a rim is a part of the hardness on a part of
-/// the element.
-const OF_THIN_RIMS: [f64; 2] = [0.3, 0.6];
+/// The pressure of an element in such a rim is a part of the hardness on a part of the element. Where the mesh resolves
+/// most rims, the last element of a rim is an edge like others.
+const OF_THIN_RIMS: f64 = 0.85;
 
 /// Part of ⟨p²⟩ that elements in thin elastic rims miss.
 fn of_thin_rims(area: &ContactArea, plastic: Option<&PlasticEdges>) -> f64 {
     let of_contact = plastic.map_or(0.0, |edges| per_contact_area(edges.contact.fraction, area));
-    (OF_THIN_RIMS[0] + OF_THIN_RIMS[1] * of_contact.clamp(0.0, 1.0)) * area.rim.thin_rims
+    let part = of_contact.clamp(0.0, 1.0) * area.rim.part_of_thin;
+    OF_THIN_RIMS * part.powf(1.5) * area.rim.thin_rims
 }
 
 /// Ratio of the error of the rms pressure in full contact to its last change.
@@ -147,37 +156,45 @@ fn of_thin_rims(area: &ContactArea, plastic: Option<&PlasticEdges>) -> f64 {
 /// third is expected.
 const OF_CHANGE: f64 = 0.4;
 
+/// Part of edges where heights jump, and the pressure is singular, above which the rms pressure has no limit.
+const MANY_JUMPS: f64 = 0.25;
+
 /// Estimated error of the rms pressure, see [`Observables::rms_pressure_error`].
 fn rms_pressure_error(
     info: &SolveInfo,
     (area, rest): (&ContactArea, Option<&ContactArea>),
-    rms_pressure: f64,
+    [rms_pressure, max_pressure]: [f64; 2],
 ) -> Option<f64> {
-    if area.rim.at_border > 0.0 {
+    if area.rim.at_border > 0.0 || area.rim.part_of_jumps > MANY_JUMPS {
         return None;
     }
     let rest = rest.filter(|rest| rest.perimeter_edges > 0);
     if area.perimeter_edges == 0 && rest.is_none() && area.rim.missing_inside[0] == 0.0 {
         return info.coarser.map(|coarser| OF_CHANGE * (rms_pressure - coarser.rms_pressure).abs());
     }
-    let of_rest = rest.map_or(0.0, |rest| error_of_squares(&rest.rim));
-    Some(0.5 * error_of_squares(&area.rim).hypot(of_rest).hypot(area.rim.missing_inside[1]) / rms_pressure)
+    let (rim, of_rest) = (&area.rim, rest.map_or(0.0, |rest| error_of_squares(&rest.rim)));
+    // Beside a thin rim, the pressure is the hardness.
+    let of_thin_rims = (ERROR_OF_THIN_RIMS * rim.thin_rims).hypot(SCATTER_OF_THIN * max_pressure * rim.scatter_of_thin);
+    let parts = [error_of_squares(rim), of_rest, of_thin_rims, rim.missing_inside[1]];
+    Some(0.5 * parts.into_iter().fold(0.0, f64::hypot) / rms_pressure)
 }
 
-/// Estimated error of ⟨p²⟩ at edges.
+/// Estimated error of ⟨p²⟩ at edges, but for thin rims.
 fn error_of_squares(rim: &Rim) -> f64 {
-    let scatter = SQUARE_SCATTER * rim.typical_squares / rim.independent_edges.max(1.0).sqrt();
+    let scatter = SQUARE_SCATTER * rim.typical_squares / rim.independent_smooth.max(1.0).sqrt();
     let (edges, lone) = (ERROR_OF_SQUARES * rim.per_square * rim.squares, ERROR_OF_LONE * rim.lone_squares);
-    scatter.hypot(edges).hypot(lone).hypot(ERROR_OF_THIN_RIMS * rim.thin_rims)
+    scatter.hypot(edges).hypot(lone)
 }
 
-/// Ratio of the 95 % error of the mean gap to that of the area. It matters for contacts that are few and light.
-const GAP_OVER_AREA: f64 = 0.025;
+/// 95 % error of the mean gap, relative to the penetration and to the square of the relative error of the area.
+///
+/// It matters for contacts of a few elements.
+const GAP_OVER_AREA: f64 = 4.0;
 
 /// 95 % error of the mean gap from singular pressure at free borders.
 ///
 /// Its unit is the ratio of `Rim::at_border` to the mean pressure. The measured values are in docs/constants.md.
-const GAP_AT_BORDER: f64 = 0.7;
+const GAP_AT_BORDER: f64 = 0.4;
 
 /// Estimated error of the mean gap. It is 0 without contact.
 fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {
@@ -186,11 +203,11 @@ fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f6
     let [common, scatter] = rim.gap_errors;
     let scatter = common.hypot(scatter / rim.independent_edges.max(1.0).sqrt());
     let parts = [
-        of_element * per_contact_area(rim.area, area) * scatter,
+        of_element * rim.area / area.cells.max(f64::MIN_POSITIVE) * scatter,
         rim.scatter_of_sharp,
         rim.hidden_gap,
-        GAP_OVER_AREA * area.relative_error() * info.mean_gap(),
-        GAP_AT_BORDER * rim.at_border / mean_pressure,
+        GAP_OVER_AREA * area.relative_error().min(1.0).powi(2) * info.penetration.abs(),
+        GAP_AT_BORDER * (rim.at_border + rim.at_jumps) / mean_pressure,
         // The overlap that the certificate has found.
         info.certificate.penetration * info.penetration_full_contact,
     ];

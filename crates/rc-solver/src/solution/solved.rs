@@ -57,6 +57,11 @@ pub(crate) trait Solved: Send + Sync {
     /// Contact stiffness, in E*/λ.
     fn stiffness(&self) -> f64;
 
+    /// dσ0/dΔ if a half-space is held down by all contact spots, in E*/λ; `None` where that is the contact stiffness.
+    ///
+    /// Plastic elements are part of the spots, and a layer is replaced by the half-space. It is infinite in full contact.
+    fn conductance(&self) -> Option<f64>;
+
     /// Pressure and gap before plastic flow, if they are stored whole.
     fn stored(&self) -> Option<[&Field; 2]>;
 

@@ -39,6 +39,7 @@ pub struct Solution<'a> {
     pub(crate) displacement: OnceLock<Field>,
     observables: OnceLock<Observables>,
     stiffness: OnceLock<f64>,
+    conductance: OnceLock<f64>,
 }
 
 /// The parts of its plan that a solution keeps.
@@ -51,6 +52,10 @@ pub(crate) struct HowSolved {
     /// The load. The hardness, which limits the pressure, is infinite for an elastic contact.
     pub(crate) asked: Bounds,
 }
+
+/// Relative errors of the conductance from its solve, for a solution that has converged and for others.
+const CONDUCTANCE: f64 = 1.3e-3;
+const ROUGH_CONDUCTANCE: f64 = 0.05;
 
 impl<'a> Solution<'a> {
     /// The solution of a solved level.
@@ -65,6 +70,7 @@ impl<'a> Solution<'a> {
             displacement: OnceLock::new(),
             observables: OnceLock::new(),
             stiffness: OnceLock::new(),
+            conductance: OnceLock::new(),
         }
     }
 
@@ -74,9 +80,10 @@ impl<'a> Solution<'a> {
     /// ([`rc_core::Kernel::to_shared`]). If there is none, displacement and stiffness are computed now.
     #[must_use]
     pub fn into_owned(self) -> Solution<'static> {
-        let Self { how, summit, solved, pressure, gap, plastic_gap, displacement, observables, stiffness } = self;
+        let Self { how, summit, solved, pressure, gap, plastic_gap, displacement, observables, stiffness, conductance } =
+            self;
         let solved = solved.into_owned();
-        Solution { how, summit, solved, pressure, gap, plastic_gap, displacement, observables, stiffness }
+        Solution { how, summit, solved, pressure, gap, plastic_gap, displacement, observables, stiffness, conductance }
     }
 
     /// How the solve ended.
@@ -194,6 +201,23 @@ impl<'a> Solution<'a> {
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         *self.stiffness.get_or_init(|| self.solved.stiffness())
+    }
+
+    /// Electrical or thermal conductance of the contact spots for unit conductivity, per nominal area, in 1/λ.
+    ///
+    /// All spots have one potential, and no current crosses elsewhere (Holm). The current spreads in half-spaces. It is
+    /// then [`Solution::stiffness`] of an elastic half-space (Barber, Proc. R. Soc. A 459, 2003, 53), and one more
+    /// linear solve with plastic elements, which conduct like others, or on a layer. It is infinite in full contact.
+    #[must_use]
+    pub fn conductance(&self) -> f64 {
+        *self.conductance.get_or_init(|| self.solved.conductance().unwrap_or_else(|| self.stiffness()))
+    }
+
+    /// Estimated error of [`Solution::conductance`] from the mesh and from its solve, in 1/λ.
+    #[must_use]
+    pub fn conductance_error(&self) -> f64 {
+        let of_solve = if self.status() == Status::NotConverged { ROUGH_CONDUCTANCE } else { CONDUCTANCE };
+        self.conductance() * self.area().relative_error_of_width().hypot(of_solve)
     }
 
     /// Passes the elements of [`Solution::elements`] to `take`, in order.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 use rc_core::{Boundary, EdgeBias, Grid};
-use rc_quadtree::{BLOCK_CELLS, CELLS, TILE, TileSet};
+use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet};
 
 use crate::solution::contact_area::area::ContactArea;
 use crate::solution::contact_area::edge_sums::EdgeSums;
@@ -89,9 +89,13 @@ impl Values<'_> {
             let cells = (0..CELLS).map(|cell| (cell % TILE, cell / TILE)).filter(|&(x, y)| x < width && y < height);
             for (x, y) in cells.map(|(x, y)| (TILE + x, TILE + y)) {
                 if seen([pressure[y][x], 0.0])[0] > 0.0 {
-                    sums.add([side; 2], hardness, &|dx, dy| {
+                    let at = |dx: isize, dy: isize| {
                         let (x, y) = patch.place(x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
                         seen([pressure[y][x], gap[y][x] - contact_gap])
+                    };
+                    let elements = &pressures.elements;
+                    sums.add([side; 2], hardness, &at, &|dx, dy| {
+                        distance((elements, coarser), place, [x, y], [dx, dy])
                     });
                     if is_free {
                         let at = [place[0] as usize * TILE + x - TILE, place[1] as usize * TILE + y - TILE];
@@ -114,6 +118,28 @@ impl Values<'_> {
             chunks.into_iter().fold(EdgeSums::from_values(&sum), |a, b| a + b).to_values()
         });
         EdgeSums::from_values(&total)
+    }
+}
+
+/// Distance of the neighbour of a cell around the tile at `place`, in sides of the cell. It is 0 beyond a free border.
+///
+/// The tile begins at cell 8 along both axes. A neighbour may be twice or half as large.
+fn distance((elements, coarser): (&Elements, usize), place: [u32; 2], cell: [usize; 2], step: [isize; 2]) -> f64 {
+    let tiles = &elements.levels()[coarser];
+    let mut tile = [0; 2];
+    for axis in [0, 1] {
+        let (n, first) = (tiles.sides()[axis] as i64, i64::from(place[axis]) * TILE as i64);
+        let at = first + cell[axis] as i64 - TILE as i64 + step[axis] as i64;
+        if !(0..n).contains(&at) && tiles.boundary() == Boundary::Free {
+            return 0.0;
+        }
+        tile[axis] = at.rem_euclid(n) / TILE as i64;
+    }
+    let [column, row] = tile;
+    match tile == place.map(i64::from) || tiles.find(column, row).is_some() {
+        true => 1.0,
+        false if elements.cover(coarser, column as u32, row as u32) => 0.75,
+        false => 1.5,
     }
 }
 

@@ -112,6 +112,29 @@ impl TileSolution<'_> {
         Ok(())
     }
 
+    /// Whether no element is plastic.
+    fn is_elastic(&self) -> bool {
+        self.plastic.is_none_or(|plastic| plastic.contact.cells <= 0.0)
+    }
+
+    /// dσ0/dΔ if the elements with a `pressure` are held down, which may be `all` in contact.
+    fn stiffness_of(&self, pressure: &[f64], all: bool) -> f64 {
+        let kernels = &self.data.kernels;
+        if all && self.is_full_contact() && !self.base().is_free() {
+            return f64::INFINITY;
+        }
+        let n = self.finest.len() as f64;
+        // The quick operator alone would be up to a percent off.
+        let x = {
+            let mut preconditioner = kernels.preconditioner().tables(self.finest);
+            let (hierarchy, tables) = self.operator_of(kernels.quick());
+            let mut corrections = TileCorrections::new(hierarchy, &tables, &mut preconditioner);
+            stiffness_pressure(pressure, n, &mut corrections, self.converged)
+        };
+        let (hierarchy, tables) = self.operator_of(kernels.response());
+        stiffness_under(&x, n, &mut TileOperator::new(hierarchy, &tables))
+    }
+
     /// The hierarchy and tables of L by this kernel on the mesh.
     fn operator_of(&self, prepared: &Prepared<f32>) -> (Arc<Hierarchy>, Tables<f32>) {
         let hierarchy = Hierarchy::new(self.base(), self.mesh.clone(), prepared.reach());
@@ -168,27 +191,16 @@ impl Solved for TileSolution<'_> {
     fn observables(&self) -> Observables {
         let max_pressure = self.mesh.layout().maximum(&self.pressure, 0.0);
         let rms_pressure = rms_pressure(&self.mesh, &self.pressure);
-        Observables::new(&self.info, (self.area, self.plastic), rms_pressure, max_pressure)
+        Observables::new(&self.info, (self.area, self.plastic), self.hardness, [rms_pressure, max_pressure])
     }
 
     /// To 1e-3 relative, or to a few percent if the solve did not converge. It takes a few applications of L.
     fn stiffness(&self) -> f64 {
-        let kernels = &self.data.kernels;
-        let pressure = elastic_part(&self.pressure, self.hardness);
-        let is_elastic = self.plastic.is_none_or(|plastic| plastic.contact.cells <= 0.0);
-        if self.is_full_contact() && !self.base().is_free() && is_elastic {
-            return f64::INFINITY;
-        }
-        let n = self.finest.len() as f64;
-        // The quick operator alone would be up to a percent off.
-        let x = {
-            let mut preconditioner = kernels.preconditioner().tables(self.finest);
-            let (hierarchy, tables) = self.operator_of(kernels.quick());
-            let mut corrections = TileCorrections::new(hierarchy, &tables, &mut preconditioner);
-            stiffness_pressure(&pressure, n, &mut corrections, self.converged)
-        };
-        let (hierarchy, tables) = self.operator_of(kernels.response());
-        stiffness_under(&x, n, &mut TileOperator::new(hierarchy, &tables))
+        self.stiffness_of(&elastic_part(&self.pressure, self.hardness), self.is_elastic())
+    }
+
+    fn conductance(&self) -> Option<f64> {
+        (!self.is_elastic()).then(|| self.stiffness_of(&self.pressure, true))
     }
 
     fn stored(&self) -> Option<[&Field; 2]> {
@@ -215,6 +227,9 @@ impl Solved for TileSolution<'_> {
                 for (g, p) in rows.iter_mut().zip(row_of_tiles(mesh.finest(), pressure, first / TILE)) {
                     *g = part.of(*g, p, self.hardness);
                 }
+            } else {
+                // Without a hardness, the pressure does not matter.
+                rows.iter_mut().for_each(|g| *g = part.of(*g, 0.0, f64::INFINITY));
             }
             take(first, &rows)
         })

@@ -56,7 +56,7 @@ impl ContactKeys {
             (lower.tolerance, lower.energy_tolerance) = (None, None);
         }
         or_lower!(self, lower, {
-            young, poisson, e_star, pressure, penetration, hardness, kernel, boundary, layer_thickness, layer_poisson, method, border_level,
+            young, poisson, e_star, pressure, penetration, hardness, conductivity, kernel, boundary, layer_thickness, layer_poisson, method, border_level,
             energy_tolerance, tolerance, area_error, output_grid
         });
         self.leakage |= lower.leakage;

@@ -1,6 +1,6 @@
 //! The contact area, its edges and its error.
 
-use std::f64::consts::{FRAC_1_SQRT_2, PI, SQRT_2};
+use std::f64::consts::{PI, SQRT_2};
 
 use crate::solution::contact_area::edge_sums::EdgeSums;
 use rayon::prelude::*;
@@ -15,10 +15,9 @@ pub struct ContactArea {
     pub cells: f64,
     /// Number of edges of smallest elements between elements in and out of contact.
     pub perimeter_edges: usize,
-    /// Length of the edges of all contacts, in λ, without the steps of the elements.
+    /// Length of the edges of all contacts, in λ, along the edges located between the centres of elements.
     ///
-    /// It follows from Crofton's formula for eight directions. For a straight edge, the error is at most 5 %. In the
-    /// mean over directions, it is zero.
+    /// The error is at most 0.3 % for a straight edge on squares, in any direction.
     pub perimeter: f64,
     /// Number of contacts minus the number of holes in them.
     ///
@@ -49,6 +48,10 @@ pub struct ContactArea {
 pub(crate) struct Rim {
     /// Σ over edges of the area of an element.
     pub(crate) area: f64,
+    /// The same over edges where the pressure is a square root of the distance.
+    pub(crate) smooth: f64,
+    /// Area of the cell, in λ².
+    pub(crate) cell: f64,
     /// Σ over smooth edges of an element's area times the squared pressure inside, in E*².
     pub(crate) squares: f64,
     /// The same squares in the mean over positions of the edges between elements, at least [`Rim::squares`].
@@ -57,6 +60,12 @@ pub(crate) struct Rim {
     pub(crate) lone_squares: f64,
     /// Σ over elements in thin elastic rims of their area times p (H - p), in E*².
     pub(crate) thin_rims: f64,
+    /// Scatter of [`Rim::thin_rims`]: the root of the sum of the squares of its terms, relative to H.
+    pub(crate) scatter_of_thin: f64,
+    /// Part of the edges that belong to plastic elements or to thin elastic rims.
+    pub(crate) part_of_thin: f64,
+    /// Part of the edges that belong to plastic elements.
+    pub(crate) part_of_sharp: f64,
     /// Part of [`ContactArea::missing_square`] inside contacts, and its 95 % error.
     pub(crate) missing_inside: [f64; 2],
     /// Size of [`EdgeBias::per_square`].
@@ -65,10 +74,11 @@ pub(crate) struct Rim {
     pub(crate) gap_errors: [f64; 2],
     /// 95 % error of the mean gap from places that elements may hide, in λ.
     pub(crate) hidden_gap: f64,
-    /// Number of edges that scatter independently.
+    /// Number of edges that scatter independently, and number of smooth ones among them.
     ///
     /// Edges in a row with the same place between elements count as one, and so do those of identical asperities.
     pub(crate) independent_edges: f64,
+    pub(crate) independent_smooth: f64,
     /// 95 % error of the penetration from the scatter of sharp edges, in λ.
     pub(crate) scatter_of_sharp: f64,
     /// Side of the smallest elements, in λ.
@@ -78,12 +88,19 @@ pub(crate) struct Rim {
     /// It is the sum of p² a s over elements along a border, with their area a and their side s across the border. The
     /// sum is zero where contact does not reach a free border.
     pub(crate) at_border: f64,
+    /// The same at edges where heights jump.
+    pub(crate) at_jumps: f64,
+    /// Part of the edges where heights jump.
+    pub(crate) part_of_jumps: f64,
 }
 
 /// 95 % error of the area, in elements, for one independent edge.
 ///
 /// It grows with the root of the number of independent edges, and is the same on every mesh.
 const SCATTER: f64 = 0.165;
+
+/// The same for an edge where heights jump. It is anywhere between two centres.
+const SCATTER_OF_JUMP: f64 = 0.57;
 
 /// 95 % error of the bias, in elements, for each unit of [`ContactArea::gap_deviation`].
 ///
@@ -93,7 +110,7 @@ const ERROR_OF_DEVIATION: f64 = 0.018;
 /// 95 % error of the bias, relative to (count - `fraction`)² / `fraction`.
 ///
 /// It is of second order.
-const ERROR_OF_TERM: f64 = 0.25;
+const ERROR_OF_TERM: f64 = 0.3;
 
 /// 95 % error for each diagonal above or below the expected number [`DIAGONALS`].
 ///
@@ -117,7 +134,7 @@ const DIAGONALS: f64 = SQRT_2;
 ///
 /// It is the error for one independent edge, and that of a height at a random place between two heights is uniform over
 /// their step.
-const SCATTER_OF_SHARP: f64 = 0.6;
+const SCATTER_OF_SHARP: f64 = 0.5;
 
 /// Shift of the area by the singular pressure at a free border, and its 95 % error.
 ///
@@ -132,15 +149,36 @@ const SHIFT_AT_BORDER: [f64; 2] = [0.3, 0.5];
 const ERROR_OF_SHORT_WAVES: f64 = 1.2;
 const LONGEST_SHORT_WAVE: f64 = 1.5;
 
+/// 95 % error of the place of an edge for a conducting spot, in elements, at edges where the pressure vanishes and at
+/// edges of plastic elements.
+///
+/// Elements at the former edges are in contact if a part of them is, which is what a solve needs. The latter are in
+/// contact if their centre is, which makes spots narrower.
+const WIDTH_AT_EDGE: f64 = 0.03;
+const WIDTH_AT_SHARP_EDGE: f64 = 0.16;
+
+/// Ratio of the 95 % error of this width to that of the area.
+const WIDTH_OF_AREA: f64 = 1.25;
+
 /// Part of the squares of lone elements that they miss.
 ///
 /// It is a mean over contacts of 0.3 to 0.8 elements in radius.
 const OF_LONE_SQUARES: f64 = 0.25;
 
+/// Smallest area of a contact, in the area of its elements. It carries load, so it has an area.
+pub(crate) const SMALLEST: f64 = 0.1;
+
 /// 95 % error of the area from the tolerance of the solve.
 ///
 /// It is relative to the area and to the square of the energy error.
 const ERROR_OF_SOLVE: f64 = 1.0;
+
+/// Excess of the length along edges that are not sharp, relative to it, in the mean over directions.
+///
+/// Their positions have errors that depend on the place between two centres, so that a straight edge is found with
+/// bends. The excess is 0 along the elements and at 45 degrees to them, and at most 0.005 at 18 to 27 degrees, for any
+/// size of the elements.
+const EXCESS_LENGTH: f64 = 0.0021;
 
 impl ContactArea {
     /// The contact area of `pressure` and `gap` on a uniform grid.
@@ -175,7 +213,7 @@ impl ContactArea {
         let grid = pressure.grid();
         let values = [pressure.values(), gap.values()];
         let at = |place: [usize; 2]| around(values, [grid.nx(), grid.ny()], place, boundary);
-        let mut sums = sums_of_rows(grid, hardness, |i| values[0][i] > 0.0, at);
+        let mut sums = sums_of_rows((grid, boundary), hardness, |i| values[0][i] > 0.0, at);
         if boundary == Boundary::Free {
             add_borders(&mut sums, pressure, hardness);
         }
@@ -190,7 +228,7 @@ impl ContactArea {
         let mean_pressure = size_of_elements(finest, sums).map(|(size, sums)| size * sums.pressure).sum();
         let [shift, error] = SHIFT_AT_BORDER.map(|part| part * area.change_by_border(mean_pressure));
         let error = scatter.error(area.cells - area.fraction, area.fraction.max(0.1 * area.cells)).hypot(error);
-        Self { fraction: (area.fraction - shift).max(0.0), error: error.min(1.0), ..area }
+        Self { fraction: (area.fraction - shift).max(SMALLEST * area.cells), error: error.min(1.0), ..area }
     }
 
     /// The area without its error, and the data that the error follows from.
@@ -205,7 +243,7 @@ impl ContactArea {
             missing_square: 0.0,
             fraction: 0.0,
             error: 0.0,
-            rim: Rim { side: (sides[0] * sides[1]).sqrt(), ..Rim::of(sums, finest, bias) },
+            rim: Rim::of(sums, finest, bias),
         };
         let mut scatter = Scatter::default();
         for (coarser, (size, sums)) in size_of_elements(finest, sums).enumerate() {
@@ -221,7 +259,7 @@ impl ContactArea {
             area.euler_number += contacts;
             area.gap_deviation += deviation;
             area.perimeter_edges += sums.edges << coarser;
-            area.perimeter += length(sums, sides.map(|side| side * f64::from(1_u32 << coarser)));
+            area.perimeter += sums.length * (1.0 - EXCESS_LENGTH * smooth / edges.max(1.0));
             let of_bias = bias.per_edge_error.hypot(ERROR_OF_OBLONG * (sides[0] / sides[1]).ln());
             scatter.add(size, sums, [deviation, of_bias * smooth]);
         }
@@ -237,14 +275,14 @@ impl ContactArea {
     /// Round contacts of the radius a with the pressure c √s at the distance s from their edge. A stamp of this radius
     /// has E* dΔ/(π √(2 a s)), so the edge moves by 2 E* dΔ/(π c √(2 a)).
     fn per_depth(&self) -> f64 {
-        let Rim { area, squares, side, .. } = self.rim;
+        let Rim { area, smooth, squares, side, cell, .. } = self.rim;
         if squares == 0.0 || self.fraction == 0.0 {
             return 0.0;
         }
         // On average, the last element of a contact is half an element from the edge.
-        let c = (2.0 * squares / (area * side)).sqrt();
-        let radius = 2.0 * self.fraction / self.perimeter;
-        2.0 * self.perimeter / (PI * c * (2.0 * radius).sqrt())
+        let c = (2.0 * squares / (smooth * side)).sqrt();
+        let radius = 2.0 * self.fraction * cell / self.perimeter;
+        2.0 * self.perimeter * (smooth / area) / (PI * c * (2.0 * radius).sqrt() * cell)
     }
 
     /// Unit of [`SHIFT_AT_BORDER`].
@@ -260,6 +298,27 @@ impl ContactArea {
         Self { error: self.error.hypot(ERROR_OF_SOLVE * energy_error.powi(2) * self.fraction), ..self }
     }
 
+    /// Relative error of the width of contact spots, which their conductance is proportional to.
+    ///
+    /// It is the width by which elements miss the edges of spots, in units of the width 2 A/P.
+    pub(crate) fn relative_error_of_width(&self) -> f64 {
+        if self.fraction == 0.0 {
+            return 0.0;
+        }
+        let sharp = self.rim.part_of_sharp;
+        let of_edge = WIDTH_AT_EDGE * (1.0 - sharp) + WIDTH_AT_SHARP_EDGE * sharp;
+        let edges = of_edge * self.rim.area / (2.0 * self.fraction);
+        (WIDTH_OF_AREA * self.relative_error()).hypot(edges)
+    }
+
+    /// Part of the contact edges at which the heights jump, as at the edge of a flat top.
+    ///
+    /// Such an edge is anywhere between two samples of the heights.
+    #[must_use]
+    pub fn part_of_jumps(&self) -> f64 {
+        self.rim.part_of_jumps
+    }
+
     /// Ratio of `error` to `fraction`. It is 0 without contact.
     #[must_use]
     pub fn relative_error(&self) -> f64 {
@@ -271,7 +330,7 @@ impl ContactArea {
 ///
 /// `at` gives pressure and gap around each place. The gap of contact is subtracted from the gap.
 pub(crate) fn sums_of_rows<A: Fn(isize, isize) -> [f64; 2]>(
-    grid: Grid,
+    (grid, boundary): (Grid, Boundary),
     hardness: f64,
     is_in_contact: impl Fn(usize) -> bool + Sync,
     at: impl Fn([usize; 2]) -> A + Sync,
@@ -280,7 +339,7 @@ pub(crate) fn sums_of_rows<A: Fn(isize, isize) -> [f64; 2]>(
     let row_sums = |iy: usize| {
         let mut sums = EdgeSums::default();
         for ix in (0..nx).filter(|ix| is_in_contact(iy * nx + ix)) {
-            sums.add(sides, hardness, &at([ix, iy]));
+            sums.add(sides, hardness, &at([ix, iy]), &distance([nx, grid.ny()], [ix, iy], boundary));
         }
         sums
     };
@@ -309,20 +368,29 @@ fn size_of_elements(finest: Grid, sums: &[EdgeSums]) -> impl Iterator<Item = (f6
 }
 
 impl Rim {
-    /// All but [`Rim::side`].
     fn of(sums: &[EdgeSums], finest: Grid, bias: EdgeBias) -> Self {
-        let mut rim = Self { per_square: bias.per_square.abs(), gap_errors: bias.gap_errors, ..Self::default() };
-        let (mut sharp, mut step) = (0.0, [0.0; 2]);
-        let side = finest.spacing().x;
+        let area = finest.spacing().x * finest.spacing().y;
+        let mut rim = Self {
+            per_square: bias.per_square.abs(),
+            gap_errors: bias.gap_errors,
+            side: area.sqrt(),
+            cell: area * finest.len() as f64,
+            ..Self::default()
+        };
+        let (mut scatter_of_thin, mut scatter_of_sharp, mut step) = (0.0_f64, 0.0_f64, [0.0; 2]);
         for (size, sums) in size_of_elements(finest, sums) {
             let (edges, together) = (sums.edges as f64, edges_that_scatter_together(sums));
+            let (sharp, smooth) = (sums.sharp as f64, (sums.smooth() - sums.thin) as f64);
             rim.area += size * edges;
+            rim.smooth += size * smooth;
             rim.squares += size * sums.squares;
             // Where p² is linear, that of the second element is on average three times that of the first.
             rim.typical_squares += size * sums.squares.max(sums.next_squares / 3.0);
             rim.lone_squares += size * sums.lone_squares;
-            rim.hidden_gap += size * side * sums.hidden_rises;
+            rim.hidden_gap += size * (size * rim.cell).sqrt() * sums.hidden_rises;
             rim.thin_rims += size * sums.thin_rims;
+            scatter_of_thin += size.powi(2) * sums.thin_rims_squared * together;
+            rim.part_of_sharp += size * sharp;
             rim.missing_inside[0] +=
                 size * (bias.per_difference * sums.differences + bias.per_second_difference * sums.second_differences);
             let of_short_waves = (sums.second_differences - LONGEST_SHORT_WAVE * sums.differences).max(0.0);
@@ -330,12 +398,21 @@ impl Rim {
                 * (bias.per_difference_error * sums.differences
                     + ERROR_OF_SHORT_WAVES * bias.per_difference.abs() * of_short_waves);
             rim.independent_edges += edges / together;
+            rim.independent_smooth += smooth / together;
             rim.at_border += size * sums.at_border;
-            sharp += size.powi(2) * sums.sharp as f64 * together;
+            rim.at_jumps += size * sums.at_jumps;
+            rim.part_of_jumps += size * sums.jumps as f64;
+            scatter_of_sharp += size.powi(2) * sharp * together;
             step = [step[0] + size * sums.steps, step[1] + size * sums.known_sharp as f64];
         }
+        rim.scatter_of_thin = scatter_of_thin.sqrt();
+        if rim.area > 0.0 {
+            rim.part_of_jumps /= rim.area;
+            rim.part_of_thin = 1.0 - rim.smooth / rim.area - rim.part_of_jumps;
+            rim.part_of_sharp /= rim.area;
+        }
         if step[1] > 0.0 {
-            rim.scatter_of_sharp = SCATTER_OF_SHARP * sharp.sqrt() / rim.area * step[0] / step[1];
+            rim.scatter_of_sharp = SCATTER_OF_SHARP * scatter_of_sharp.sqrt() / rim.area * step[0] / step[1];
         }
         rim
     }
@@ -357,7 +434,9 @@ impl Scatter {
     /// Adds elements of one size with these sums of the deviation and of the error of the bias.
     fn add(&mut self, size: f64, sums: &EdgeSums, [deviation, bias]: [f64; 2]) {
         let edges = sums.edges as f64;
-        self.edges += (SCATTER * size).powi(2) * edges * edges_that_scatter_together(sums);
+        let (jumps, together) = (sums.jumps as f64, edges_that_scatter_together(sums));
+        let squares = SCATTER.powi(2) * (edges - jumps) + SCATTER_OF_JUMP.powi(2) * jumps;
+        self.edges += size.powi(2) * squares * together;
         self.deviation += ERROR_OF_DEVIATION * size * deviation;
         self.bias += size * bias;
         self.directions += ERROR_OF_DIRECTIONS * size * (sums.diagonals as f64 - DIAGONALS * edges);
@@ -388,24 +467,6 @@ fn edges_that_scatter_together(sums: &EdgeSums) -> f64 {
     in_rows.max(sums.copies()).min(edges).max(1.0)
 }
 
-/// Length of all edges of elements with these sides.
-///
-/// It follows from Crofton's formula, for eight directions on squares and for four on rectangles.
-fn length(sums: &EdgeSums, sides: [f64; 2]) -> f64 {
-    let (along_x, along_y) = (sums.along_x as f64, (sums.edges - sums.along_x) as f64);
-    let [x, y] = sides;
-    if are_squares(sides) {
-        PI / 8.0 * (x * y).sqrt() * (along_x + along_y + FRAC_1_SQRT_2 * sums.diagonals as f64)
-    } else {
-        PI / 4.0 * (y * along_x + x * along_y)
-    }
-}
-
-/// Whether elements are squares, up to rounding.
-fn are_squares([x, y]: [f64; 2]) -> bool {
-    (x / y - 1.0).abs() < 1e-6
-}
-
 /// Pressure and gap at places around an element of a grid.
 ///
 /// Beyond a free border they are the values beside the border.
@@ -425,6 +486,15 @@ pub(crate) fn around(
     }
 }
 
+/// Distance of the places around an element of a grid, in its sides. It is 0 beyond a free border.
+pub(crate) fn distance([nx, ny]: [usize; 2], [ix, iy]: [usize; 2], boundary: Boundary) -> impl Fn(isize, isize) -> f64 {
+    let is_place = |i: usize, d: isize, n: usize| i.checked_add_signed(d).is_some_and(|i| i < n);
+    move |dx, dy| {
+        let is_inside = boundary == Boundary::Periodic || (is_place(ix, dx, nx) && is_place(iy, dy, ny));
+        f64::from(u8::from(is_inside))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -438,7 +508,7 @@ mod tests {
         for x in 0..64 {
             for y in -2..66 {
                 if at(x, y)[0] > 0.0 {
-                    sums.add([1.0 / 64.0; 2], f64::INFINITY, &|dx, dy| at(x + dx, y + dy));
+                    sums.add([1.0 / 64.0; 2], f64::INFINITY, &|dx, dy| at(x + dx, y + dy), &|_, _| 1.0);
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 use std::ops::{Add, AddAssign};
 
+use crate::solution::contact_area::corner::{at_corner, sharp_position};
 use crate::solution::contact_area::edge::Edge;
 
 /// The eight neighbours of an element, in order around it.
@@ -11,7 +12,7 @@ const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-
 const N_POSITIONS: usize = 128;
 
 /// Number of other values of [`EdgeSums`].
-const N_VALUES: usize = 23;
+const N_VALUES: usize = 27;
 
 /// The values of [`EdgeSums`] as ranks exchange them.
 pub(crate) type Values = [f64; N_VALUES + N_POSITIONS];
@@ -23,8 +24,6 @@ pub(crate) struct EdgeSums {
     pub(crate) n_contact: usize,
     /// Number of pairs of neighbours of which one is in contact.
     pub(crate) edges: usize,
-    /// Number of these pairs that are neighbours along x.
-    pub(crate) along_x: usize,
     /// Number of such pairs across a corner.
     pub(crate) diagonals: usize,
     /// Number of edges with a known gap beside the contact.
@@ -38,16 +37,24 @@ pub(crate) struct EdgeSums {
     /// Number of edges of plastic elements.
     ///
     /// There the pressure falls from the hardness to zero within an element. Of the sums above, these edges are only in
-    /// `edges`, `along_x` and `diagonals`.
+    /// `edges`, `diagonals` and `length`.
     pub(crate) sharp: usize,
     /// Number of sharp edges where the gap beside the contact is known.
     pub(crate) known_sharp: usize,
+    /// Number of edges of elements in [`EdgeSums::thin_rims`].
+    pub(crate) thin: usize,
     /// Σ (s - ½) over sharp edges with a known gap.
     ///
     /// The gap grows in proportion to the distance from a sharp edge, and so does the overlap on the other side.
     pub(crate) shift_of_sharp: f64,
     /// Σ of overlap inside and gap outside, over sharp edges with a known gap, in λ.
     pub(crate) steps: f64,
+    /// Number of edges where the heights jump, as at the edge of a flat top.
+    ///
+    /// They may be anywhere between the two centres. Of the sums above, these edges are only in `edges` and `diagonals`.
+    pub(crate) jumps: usize,
+    /// Σ p² s over these edges, with the side s across the edge, in E*² λ.
+    pub(crate) at_jumps: f64,
     /// Σ p of the elements.
     pub(crate) pressure: f64,
     /// Σ p² of the elements inside, over all edges that are not sharp, without [`EdgeSums::thin_rims`].
@@ -60,9 +67,11 @@ pub(crate) struct EdgeSums {
     ///
     /// The elastic rim there is thinner than an element.
     pub(crate) thin_rims: f64,
-    /// Σ of the squared differences of pressure between neighbours that are both in contact.
+    /// Σ of the squares of the terms of [`EdgeSums::thin_rims`], relative to H².
+    pub(crate) thin_rims_squared: f64,
+    /// Σ of the squared differences of pressure between neighbours that are both in elastic contact.
     pub(crate) differences: f64,
-    /// Σ of the squared second differences of pressure over three elements in a line, all in contact.
+    /// Σ of the squared second differences of pressure over three elements in a line, all in elastic contact.
     pub(crate) second_differences: f64,
     /// Number of elements inside the contact that may hide a place out of contact.
     ///
@@ -74,10 +83,28 @@ pub(crate) struct EdgeSums {
     ///
     /// It is four times the number of contacts minus the number of their holes.
     pub(crate) turns: isize,
+    /// Σ of the lengths of located edges between the centres of elements, in λ.
+    pub(crate) length: f64,
     /// Σ p² s over the sides of elements along free borders, with the side s across the border, in E*² λ.
     pub(crate) at_border: f64,
     /// Number of located edges by the root of their position between the centres of two elements.
     positions: [u32; N_POSITIONS],
+}
+
+/// Position below which the last element of a contact has a lower pressure than the next one inside.
+///
+/// At the edge of a flat top the pressure is highest, and the gap beside it is that of the lower ground.
+const NEAR_CENTRE: f64 = 0.02;
+
+/// Ratio of the pressures of the last two elements inside. It is about 2 at the edge of a stamp.
+const HIGHER: f64 = 1.5;
+
+/// Whether heights jump at an edge with these pressures of the last two elements inside and this ratio as in
+/// [`Edge::new`].
+fn is_jump([pressure, inside]: [f64; 2], gap_ratio: f64) -> bool {
+    // With the root of the distance, the ratio of the squares is that of 0.02 to 1.02 at most.
+    let is_high = inside > 0.0 && pressure > HIGHER * inside;
+    is_high && Edge::new(gap_ratio).is_some_and(|edge| edge.position() < NEAR_CENTRE)
 }
 
 impl Default for EdgeSums {
@@ -90,14 +117,22 @@ impl EdgeSums {
     /// Adds an element in contact, where pressures are at most the `hardness`.
     ///
     /// `at` gives pressure and gap at a place relative to the element, in elements. A gap that is not known may be NaN.
-    /// `sides` are the sides of the element.
-    pub(crate) fn add(&mut self, sides: [f64; 2], hardness: f64, at: &impl Fn(isize, isize) -> [f64; 2]) {
+    /// `distance` is that of a neighbour's centre in sides of the element. It is 0 beyond a free border. `sides` are the
+    /// sides of the element.
+    pub(crate) fn add(
+        &mut self,
+        sides: [f64; 2],
+        hardness: f64,
+        at: &impl Fn(isize, isize) -> [f64; 2],
+        distance: &impl Fn(isize, isize) -> f64,
+    ) {
         self.n_contact += 1;
         let pressure = at(0, 0)[0];
         self.pressure += pressure;
         let around = AROUND.map(|[dx, dy]| at(dx, dy)[0]);
         let beside = [[around[3], around[4]], [around[1], around[6]]];
-        self.add_inside(pressure, hardness, beside);
+        let distances = [[[-1, 0], [1, 0]], [[0, -1], [0, 1]]].map(|axis| axis.map(|[dx, dy]| distance(dx, dy)));
+        self.add_inside(pressure, hardness, (beside, distances));
         let free = around.map(|p| p <= 0.0);
         if free == [false; 8] {
             return;
@@ -105,43 +140,59 @@ impl EdgeSums {
         let any_beside = |is: fn(f64, f64) -> bool| beside.as_flattened().iter().any(|&p| is(p, hardness));
         let is_thin_rim = pressure < hardness && any_beside(|p, _| p <= 0.0) && any_beside(|p, hardness| p >= hardness);
         if is_thin_rim {
-            self.thin_rims += pressure * (hardness - pressure);
+            let term = pressure * (hardness - pressure);
+            self.thin_rims += term;
+            self.thin_rims_squared += (term / hardness).powi(2);
         }
-        for ([dx, dy], _) in AROUND.into_iter().zip(free).filter(|&(_, free)| free) {
+        let mut positions = [0.5; 8];
+        for (place, [dx, dy]) in AROUND.into_iter().enumerate().filter(|&(place, _)| free[place]) {
             if dx != 0 && dy != 0 {
                 self.diagonals += 1;
                 continue;
             }
             self.edges += 1;
-            self.along_x += usize::from(dy == 0);
             if pressure >= hardness {
-                self.add_sharp(at(0, 0)[1], at(dx, dy)[1]);
+                positions[place] = self.add_sharp(at(0, 0)[1], at(dx, dy)[1]).unwrap_or(0.5);
                 continue;
             }
-            if !is_thin_rim {
-                self.squares += pressure * pressure;
-                self.next_squares += at(-dx, -dy)[0].powi(2);
+            let (side, inside) = (if dy == 0 { sides[0] } else { sides[1] }, at(-dx, -dy)[0]);
+            if is_jump([pressure, inside], at(dx, dy)[1] / (pressure * side)) {
+                self.jumps += 1;
+                self.at_jumps += pressure * pressure * side;
+                continue;
             }
-            let side = if dy == 0 { sides[0] } else { sides[1] };
-            self.add_smooth([1, 2].map(|steps| at(steps * dx, steps * dy)[1] / (pressure * side)));
+            if is_thin_rim {
+                self.thin += 1;
+            } else {
+                self.squares += pressure * pressure;
+                self.next_squares += inside.powi(2);
+            }
+            let ratios = [1, 2].map(|steps| at(steps * dx, steps * dy)[1] / (pressure * side));
+            positions[place] = self.add_smooth(ratios).unwrap_or(0.5);
         }
-        self.add_turns(at);
+        self.add_corners(sides, hardness, positions, at);
     }
 
     /// Adds the differences of pressure to the neighbours, which lie before and behind along both axes.
-    fn add_inside(&mut self, pressure: f64, hardness: f64, beside: [[f64; 2]; 2]) {
+    ///
+    /// A neighbour of another size is not at the distance of a side, and beyond a free border there is none.
+    fn add_inside(&mut self, pressure: f64, hardness: f64, (beside, distances): ([[f64; 2]; 2], [[f64; 2]; 2])) {
         let mut curvatures = [0.0; 2];
-        for ([before, behind], curvature) in beside.into_iter().zip(&mut curvatures) {
-            if behind > 0.0 {
-                self.differences += (behind - pressure).powi(2);
-                if before > 0.0 {
-                    let second = before - 2.0 * pressure + behind;
+        // A step to a plastic element is at the edge of the elastic part, as the step to a free element is.
+        let is_elastic = |p: f64| p > 0.0 && p < hardness;
+        for (([before, behind], distances), curvature) in beside.into_iter().zip(distances).zip(&mut curvatures) {
+            let in_line = distances.iter().all(|distance| (distance - 1.0).abs() < 0.1);
+            let second = before - 2.0 * pressure + behind;
+            if distances[1] > 0.0 && is_elastic(pressure) && is_elastic(behind) {
+                self.differences += ((behind - pressure) / distances[1]).powi(2);
+                if in_line && is_elastic(before) {
                     self.second_differences += second.powi(2);
-                    *curvature = if before.min(behind) >= pressure { second } else { 0.0 };
                 }
-            } else if before <= 0.0 && pressure < hardness {
+            }
+            if behind <= 0.0 && before <= 0.0 && pressure < hardness {
                 self.lone_squares += pressure * pressure;
             }
+            *curvature = if in_line && before.min(behind) >= pressure { second } else { 0.0 };
         }
         // Half an element from the minimum, the pressure is higher by an eighth of the second difference.
         let rise = 0.25 * (curvatures[0] * curvatures[1]).sqrt();
@@ -151,25 +202,29 @@ impl EdgeSums {
         }
     }
 
-    /// Adds the corners of an element.
-    fn add_turns(&mut self, at: &impl Fn(isize, isize) -> [f64; 2]) {
-        let in_contact = |dx: isize, dy: isize| at(dx, dy)[0] > 0.0;
-        for [x, y] in [[-1, -1], [0, -1], [-1, 0], [0, 0]] {
-            let corner = [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]];
-            // The first of its elements in contact counts each corner.
-            if corner.into_iter().find(|&[x, y]| in_contact(x, y)) == Some([0, 0]) {
-                match corner.into_iter().filter(|&[x, y]| in_contact(x, y)).count() {
-                    1 => self.turns += 1,
-                    3 => self.turns -= 1,
-                    _ => {}
-                }
+    /// Adds the corners of an element with these positions of edges to its eight neighbours.
+    fn add_corners(
+        &mut self,
+        sides: [f64; 2],
+        hardness: f64,
+        positions: [f64; 8],
+        at: &impl Fn(isize, isize) -> [f64; 2],
+    ) {
+        let [_, below, _, before, behind, _, above, _] = positions;
+        for (dy, along_y) in [(-1, below), (1, above)] {
+            for (dx, along_x) in [(-1, before), (1, behind)] {
+                let (turns, length) = at_corner(at, [dx, dy], [along_x, along_y], sides, hardness);
+                self.turns += turns;
+                self.length += length;
             }
         }
     }
 
     /// Adds an edge whose next two gaps outside have these ratios to the pressure ([`Edge::new`]).
-    fn add_smooth(&mut self, [next, second]: [f64; 2]) {
-        let Some(edge) = Edge::new(next) else { return };
+    ///
+    /// Returns its position, if that is known.
+    fn add_smooth(&mut self, [next, second]: [f64; 2]) -> Option<f64> {
+        let edge = Edge::new(next)?;
         self.shift += edge.position() - 0.5;
         self.known[0] += 1;
         self.add_position(edge.position());
@@ -177,22 +232,20 @@ impl EdgeSums {
             self.known[1] += 1;
             self.deviation += deviation;
         }
+        Some(edge.position())
     }
 
     /// Adds the edge between a plastic element and a neighbour out of contact.
     ///
-    /// `inside` and `outside` are their gaps. A negative gap is an overlap.
-    fn add_sharp(&mut self, inside: f64, outside: f64) {
+    /// `inside` and `outside` are their gaps. A negative gap is an overlap. Returns the position, if it is known.
+    fn add_sharp(&mut self, inside: f64, outside: f64) -> Option<f64> {
         self.sharp += 1;
-        if outside.is_nan() {
-            return;
-        }
-        let (overlap, gap) = ((-inside).max(0.0), outside.max(0.0));
-        let position = if overlap + gap > 0.0 { overlap / (overlap + gap) } else { 0.5 };
+        let position = sharp_position([inside, outside])?;
         self.shift_of_sharp += position - 0.5;
-        self.steps += overlap + gap;
+        self.steps += (-inside).max(0.0) + outside.max(0.0);
         self.known_sharp += 1;
         self.add_position(position);
+        Some(position)
     }
 
     /// Counts an edge at a position between the centres of two elements, from 0 to 1.
@@ -205,36 +258,53 @@ impl EdgeSums {
 
     /// The sums as ranks exchange them. Counts are exact.
     pub(crate) fn to_values(self) -> Values {
-        let Self { n_contact, edges, along_x, diagonals, known, sharp, known_sharp, hidden, turns, positions, .. } =
-            self;
+        let Self {
+            n_contact, edges, diagonals, known, sharp, known_sharp, thin, hidden, jumps, turns, positions, ..
+        } = self;
         let Self { shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares, .. } = self;
-        let Self { next_squares, thin_rims, differences, second_differences, hidden_rises, at_border, .. } = self;
-        let counts = [n_contact, edges, along_x, diagonals, known[0], known[1], sharp, known_sharp, hidden];
+        let Self { next_squares, thin_rims, thin_rims_squared, differences, second_differences, .. } = self;
+        let Self { hidden_rises, at_border, length, at_jumps, .. } = self;
+        let counts = [n_contact, edges, diagonals, known[0], known[1], sharp, known_sharp, thin, hidden, jumps];
         let sums = [shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares];
-        let more_sums = [next_squares, thin_rims, differences, second_differences, hidden_rises, at_border];
+        let of_pressures = [next_squares, thin_rims, thin_rims_squared, differences, second_differences];
         let counts = counts.into_iter().map(|n| n as f64).chain([turns as f64]);
-        let mut values = counts.chain(sums).chain(more_sums).chain(positions.map(f64::from));
+        let mut values = counts
+            .chain(sums)
+            .chain(of_pressures)
+            .chain([hidden_rises, at_border, length, at_jumps])
+            .chain(positions.map(f64::from));
         std::array::from_fn(|_| values.next().unwrap_or_default())
     }
 
     /// The sums from [`EdgeSums::to_values`].
     pub(crate) fn from_values(values: &Values) -> Self {
-        let [n_contact, edges, along_x, diagonals, first, second, sharp, known_sharp, hidden] =
+        let [n_contact, edges, diagonals, first, second, sharp, known_sharp, thin, hidden, jumps] =
             std::array::from_fn(|i| values[i] as usize);
         let [shift, deviation, shift_of_sharp, steps, pressure, squares, lone_squares] =
-            std::array::from_fn(|i| values[10 + i]);
-        let [next_squares, thin_rims, differences, second_differences, hidden_rises, at_border] =
-            std::array::from_fn(|i| values[17 + i]);
+            std::array::from_fn(|i| values[11 + i]);
+        let [
+            next_squares,
+            thin_rims,
+            thin_rims_squared,
+            differences,
+            second_differences,
+            hidden_rises,
+            at_border,
+            length,
+            at_jumps,
+        ] = std::array::from_fn(|i| values[18 + i]);
         Self {
             n_contact,
             edges,
-            along_x,
             diagonals,
             known: [first, second],
             shift,
             deviation,
             sharp,
             known_sharp,
+            thin,
+            jumps,
+            at_jumps,
             shift_of_sharp,
             steps,
             pressure,
@@ -242,12 +312,14 @@ impl EdgeSums {
             next_squares,
             lone_squares,
             thin_rims,
+            thin_rims_squared,
             differences,
             second_differences,
             hidden,
             hidden_rises,
-            turns: values[9] as isize,
+            turns: values[10] as isize,
             at_border,
+            length,
             positions: std::array::from_fn(|i| values[N_VALUES + i] as u32),
         }
     }
@@ -297,9 +369,9 @@ impl EdgeSums {
         if n > 0.0 { sum(|a, b| (a - b).powi(2)) / n - 1.0 } else { 0.0 }
     }
 
-    /// Number of edges that are not sharp.
+    /// Number of edges where the pressure vanishes.
     pub(crate) fn smooth(&self) -> usize {
-        self.edges - self.sharp
+        self.edges - self.sharp - self.jumps
     }
 }
 
@@ -328,7 +400,7 @@ mod tests {
         for position in [0.25, 0.5, 0.75] {
             let at = |dx: isize, _: isize| [if dx <= 0 { 1.0 } else { 0.0 }, 0.1 * (dx as f64 - position)];
             let mut sums = EdgeSums::default();
-            EdgeSums::add(&mut sums, [1.0; 2], 1.0, &at);
+            EdgeSums::add(&mut sums, [1.0; 2], 1.0, &at, &|_, _| 1.0);
             assert_eq!((sums.sharp, sums.known_sharp), (1, 1));
             assert!((sums.shift_of_sharp - (position - 0.5)).abs() < 1e-12, "{position}: {sums:?}");
         }
@@ -356,10 +428,17 @@ mod tests {
         let hidden = |least: f64| {
             let at = |x: isize, y: isize| [least + 0.5 * ((x as f64 - 0.4).powi(2) + (y as f64).powi(2)), 0.0];
             let mut sums = EdgeSums::default();
-            EdgeSums::add(&mut sums, [1.0; 2], f64::INFINITY, &at);
+            EdgeSums::add(&mut sums, [1.0; 2], f64::INFINITY, &at, &|_, _| 1.0);
             sums.hidden
         };
         assert_eq!([0.01, 0.1, 0.3].map(hidden), [1, 1, 0]);
+    }
+
+    /// The pressure of a stamp rises to its edge, and that of other contacts falls to zero.
+    #[test]
+    fn heights_jump_at_the_edge_of_a_stamp() {
+        assert!(is_jump([4.0, 2.0], 1e3) && !is_jump([4.0, 2.0], 0.1));
+        assert!(!is_jump([1.0, 2.0], 1e3) && !is_jump([1.0, 0.0], 1e3) && !is_jump([4.0, 2.0], f64::NAN));
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! neighbour and the gap of the other. The remaining first-order error is the same for all contacts, and is subtracted.
 
 pub(crate) mod area;
+pub(crate) mod corner;
 pub(crate) mod edge;
 pub(crate) mod edge_sums;
 pub(crate) mod plastic;

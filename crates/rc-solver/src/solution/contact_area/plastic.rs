@@ -30,7 +30,7 @@ pub struct PlasticContact {
 /// `WIDER_CONTACT` x² times that of an elastic contact. The bar of the plastic part is a linear function of x times its
 /// own. The elastic rim of a plastic contact may be thinner than an element. Its edges are then located less
 /// accurately. `docs/other-solids.md` has the measurements.
-const WIDER_CONTACT: f64 = 2.7;
+const WIDER_CONTACT: f64 = 1.8;
 const WIDER_PLASTIC: [f64; 2] = [1.2, 3.3];
 
 impl PlasticContact {
@@ -61,7 +61,7 @@ impl PlasticEdges {
             let at = around(values, [grid.nx(), grid.ny()], place, boundary);
             move |dx: isize, dy: isize| left(at(dx, dy), hardness)
         };
-        let sums = sums_of_rows(grid, hardness, |i| values[0][i] < hardness, at);
+        let sums = sums_of_rows((grid, boundary), hardness, |i| values[0][i] < hardness, at);
         let pairs = pressure.values().iter().zip(gap.values());
         let flow: f64 = pairs.filter(|(p, _)| **p >= hardness).map(|(_, g)| (-g).max(0.0)).sum();
         Self::from_sums(&[sums], grid, bias, flow / grid.len() as f64)

@@ -1,6 +1,6 @@
 //! The maximum height, without evaluating all heights.
 
-use rc_core::DVec2;
+use rc_core::{Boundary, DVec2};
 
 use crate::problem::summit::{MAX_CLIMBS, climb};
 use crate::tiles::heights::bounds::Bounds;
@@ -40,7 +40,8 @@ pub(super) fn of_tile(heights: &[f64; TILE * TILE]) -> f64 {
 /// The maximum of a surface between the centres of elements, at least `sampled`.
 ///
 /// It is searched in the highest leaves of `bounds` above `sampled`.
-pub(super) fn summit(surface: &Interpolation, bounds: &Bounds, sampled: f64) -> f64 {
+pub(super) fn summit(surface: &Interpolation, bounds: &Bounds, (sampled, boundary): (f64, Boundary)) -> f64 {
+    let inside = |at: DVec2| if boundary == Boundary::Free { at.clamp(DVec2::ZERO, DVec2::ONE) } else { at };
     let side = surface.side();
     let mut leaves: Vec<(usize, f64)> = bounds.leaves().enumerate().filter(|(_, bound)| *bound > sampled).collect();
     leaves.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -50,7 +51,7 @@ pub(super) fn summit(surface: &Interpolation, bounds: &Bounds, sampled: f64) -> 
             break;
         }
         let centre = DVec2::new((leaf % side) as f64 + 0.5, (leaf / side) as f64 + 0.5) / side as f64;
-        best = best.max(climb(&|at| surface.height(at), centre, DVec2::splat(1.0 / side as f64)));
+        best = best.max(climb(&|at| surface.height(inside(at)), centre, DVec2::splat(1.0 / side as f64)));
     }
     best
 }

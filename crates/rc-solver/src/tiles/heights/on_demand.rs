@@ -81,7 +81,7 @@ impl<'a> Heights<'a> {
         (ladder, boundary): (Ladder, Boundary),
     ) -> Result<Self, ProblemError> {
         match is_interpolated(surface, grid, ladder) {
-            Some((limit, level)) => Self::of_surface(surface, limit, level, ladder),
+            Some((limit, level)) => Self::of_surface(surface, (limit, level), ladder, boundary),
             None => Self::of_map(WholeGrid::new(surface.sample(grid)), Some(surface), (ladder, boundary)),
         }
     }
@@ -105,9 +105,9 @@ impl<'a> Heights<'a> {
 
     fn of_surface(
         surface: &dyn HeightField,
-        band_limit: usize,
-        level: u32,
+        (band_limit, level): (usize, u32),
         ladder: Ladder,
+        boundary: Boundary,
     ) -> Result<Self, ProblemError> {
         let (base_side, finest_side) = (ladder.base().nx(), ladder.finest().nx());
         let samples = surface.sample(square(base_side << level));
@@ -134,7 +134,8 @@ impl<'a> Heights<'a> {
             mean: of_samples.mean,
         };
         let sampled = extremes.greatest;
-        let summit = Summit { sampled, excess: extremes::summit(&interpolation, &bounds, sampled) - sampled };
+        let summit =
+            Summit { sampled, excess: extremes::summit(&interpolation, &bounds, (sampled, boundary)) - sampled };
         Ok(Self { ladder, grids, interpolation: Some(interpolation), bounds, extremes, summit })
     }
 
