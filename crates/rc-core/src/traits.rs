@@ -100,7 +100,7 @@ impl Default for EdgeBias {
             per_second_difference: 0.0249,
             per_edge_error: 0.0,
             per_difference_error: 0.006,
-            gap_errors: [0.028, 0.12],
+            gap_errors: [0.034, 0.12],
         }
     }
 }

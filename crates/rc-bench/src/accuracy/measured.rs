@@ -80,6 +80,15 @@ impl Scene {
         })
     }
 
+    /// Mean height minus that of the samples on a grid.
+    ///
+    /// A gap is measured from the samples of a map. Their mean is another where the surface has creases, and waves have
+    /// the same.
+    fn mean_height_missed(&self, grid: Grid) -> Result<f64> {
+        let finest = Grid::new(grid.nx() * self.finer, grid.ny() * self.finer)?;
+        Ok(self.heights.sample(finest).mean() - self.heights.sample(grid).mean())
+    }
+
     /// The limits of all quantities.
     fn limits(&self) -> Result<[f64; 4]> {
         let params = SolveParams::to_tolerance(LIMIT_TOLERANCE).by(Method::Uniform);
@@ -113,7 +122,8 @@ impl Measured {
         let map: Option<Field> = (scene.method != Method::Adaptive).then(|| scene.heights.sample(grid));
         let surface = HeightSource::Surface { surface: scene.heights.as_ref(), grid };
         let found = scene.solve(scene.solid, map.as_ref().map_or(surface, HeightSource::from), &params)?;
-        let limits = scene.limits()?;
+        let mut limits = scene.limits()?;
+        limits[2] += scene.mean_height_missed(grid)?;
         Ok(Self {
             family: scene.family,
             kind: scene.kind,

@@ -40,7 +40,8 @@ fn a_layer_is_compressed_by_the_mean_pressure() {
     let gap = number(&on_layer, "penetration_full_contact") - number(&on_layer, "penetration") + compressed;
     assert_close("mean gap", number(&on_layer, "mean_gap"), gap, 1e-9);
     let field = rc_heights::npy::read(&place.path("layer/gap.npy")).expect("a field");
-    assert_close("mean of gap.npy", field.mean(), gap, 1e-9);
+    let overlap = field.mean() / gap - 1.0;
+    assert!((-1e-12..1e-8).contains(&overlap), "gaps of the file are at least zero: {overlap:e}");
     let scene = text(&place.bytes("layer/scene.toml"));
     assert!(scene.contains("layer_thickness = 0.0003") && !scene.contains("boundary"), "{scene}");
     assert_solved(&place.run(&["solve", "layer/scene.toml", "--out", "again", "--quiet"]));
@@ -167,17 +168,18 @@ fn layers_and_patches_have_a_hardness() {
 
 /// A layer has a flow as a half-space has, but no conductance.
 ///
-/// The stiffness of a layer says nothing about conduction.
+/// Current spreads in the two bodies behind the contact, whose size is that of the cell.
 #[test]
-fn a_layer_leaks_and_has_no_conductance() {
+fn a_layer_leaks_and_conducts_by_its_spots() {
     let place = place();
     let small = ["--waves", "8", "--grid", "128", "--pressure", "4e5", "--leakage"];
     let on_half_space = summary(&place, &[&small[..], &["--method", "uniform"]].concat());
     let solved = place.run(&[&["solve"], &small[..], &LAYER, &["--out", "layer"]].concat());
     assert_solved(&solved);
-    assert!(!text(&solved.stdout).contains("conductance"), "{}", text(&solved.stdout));
+    assert!(text(&solved.stdout).contains("\n  conductance  "), "{}", text(&solved.stdout));
     let on_layer = place.json("layer/summary.json");
-    assert!(on_layer["contact_conductance"].is_null() && on_half_space["contact_conductance"].is_f64());
+    let [of_layer, of_half_space] = [&on_layer, &on_half_space].map(|found| number(found, "contact_conductance"));
+    assert!(of_layer < of_half_space && of_layer > 0.5 * of_half_space, "{of_layer}, {of_half_space}: fewer spots");
     let permeance = |summary: &Value| summary["leakage"]["permeance"][0].as_f64().expect("a permeance");
     assert!(permeance(&on_layer) > permeance(&on_half_space), "less contact, and a wider gap");
 }

@@ -28,6 +28,9 @@ const OF_FIT: f64 = 1.25;
 /// It is for summits that parabolas place too near a sample.
 const UNSURE: f64 = 0.04;
 
+/// Curvature at a summit that is certain, relative to the step down to the higher neighbour. A plateau has no such step.
+const STEEP: f64 = 3.0;
+
 impl Summit {
     /// The summit of heights at the centres of elements, with the maximum `sampled`. They are those of a `surface`, or
     /// a map.
@@ -182,7 +185,7 @@ impl Line {
         }
         let (Some(height), Some(next), Some(second)) = (at(0), at(toward), at(2 * toward)) else { return self.rise() };
         let beside = 2.0 * next - height - second;
-        let curvature = self.curvature.min((2.0 * beside).max(0.0));
+        let curvature = self.curvature.min((2.0 * beside).max(STEEP * (height - next)));
         let top = if curvature > 0.0 { (0.5 + (next - height) / curvature).max(0.0) } else { 0.0 };
         0.5 * curvature * top * top * self.of_shorter_wave(at) + UNSURE * 0.125 * curvature
     }
@@ -319,5 +322,16 @@ mod tests {
                 assert_eq!(of_map(&map, boundary), Summit { sampled: map.max(), excess: 0.0 });
             }
         }
+    }
+
+    /// Beyond the neighbour, the heights of this ridge bend upward.
+    #[test]
+    fn a_ridge_of_short_waves_has_a_summit_between_samples() {
+        let ridge =
+            |at: DVec2| (TAU * at.x + 0.3).cos() + 0.9 * (2.0 * TAU * at.x - 0.4).cos() + (3.0 * TAU * at.x).cos();
+        let summit = sampled(4096, ridge).max();
+        let found = of_map(&sampled(12, ridge), Boundary::Periodic);
+        let excess = summit - found.sampled;
+        assert!((0.8 * excess..2.0 * excess).contains(&found.excess), "{found:?}, {excess}");
     }
 }

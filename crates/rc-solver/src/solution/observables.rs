@@ -189,7 +189,7 @@ fn error_of_squares(rim: &Rim) -> f64 {
 /// 95 % error of the mean gap, relative to the penetration and to the square of the relative error of the area.
 ///
 /// It matters for contacts of a few elements.
-const GAP_OVER_AREA: f64 = 4.0;
+const GAP_OVER_AREA: f64 = 3.0;
 
 /// 95 % error of the mean gap from singular pressure at free borders.
 ///

@@ -408,7 +408,8 @@ impl Rim {
         rim.scatter_of_thin = scatter_of_thin.sqrt();
         if rim.area > 0.0 {
             rim.part_of_jumps /= rim.area;
-            rim.part_of_thin = 1.0 - rim.smooth / rim.area - rim.part_of_jumps;
+            // Rounding may leave less than nothing of many elastic edges.
+            rim.part_of_thin = (1.0 - rim.smooth / rim.area - rim.part_of_jumps).max(0.0);
             rim.part_of_sharp /= rim.area;
         }
         if step[1] > 0.0 {
