@@ -14,6 +14,8 @@ Grid = Union[int, tuple[int, int], str]
 Boundary = Literal["periodic", "free"]
 #: How the problem is solved.
 Method = Literal["adaptive", "uniform", "gauss-seidel"]
+#: Conductivity of both bodies, or of each.
+Conductivity = Union[float, tuple[float, float], str]
 #: A file or a folder.
 Path = Union[str, "os.PathLike[str]"]
 #: Units of the lengths of a file.
@@ -43,6 +45,8 @@ def _plain(name: str, value: Any) -> Any:
         return value.item()
     if name in _PAIRS and isinstance(value, (tuple, list)) and len(value) == 2:
         return f"{value[0]}x{value[1]}"
+    if name == "conductivity" and isinstance(value, (tuple, list)) and len(value) == 2:
+        return f"{value[0]},{value[1]}"
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     return value

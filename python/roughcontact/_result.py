@@ -95,8 +95,10 @@ class Result:
     mean_gap_error: float
     #: dσ0/dΔ (Pa/m); None in full contact.
     contact_stiffness: float | None
-    #: Electrical or thermal conductance per nominal area and conductivity (1/m); None in full contact and for a layer.
+    #: Electrical or thermal conductance of the contact spots, per nominal area and conductivity (1/m); None in full contact.
     contact_conductance: float | None
+    #: Estimated error of ``contact_conductance`` (1/m).
+    contact_conductance_error: float | None
     #: Elastic energy of the cell (J).
     elastic_energy: float
     #: Rms height about the mean (m).
@@ -241,6 +243,11 @@ class Result:
     def mean_plastic_gap(self) -> float | None:
         """Mean over the cell of the overlap that plastic flow has removed (m). None without a hardness."""
         return self.summary.get("mean_plastic_gap")
+
+    @property
+    def conductance(self) -> float | None:
+        """Conductance per nominal area (S/m² or W/(m² K)). None without ``conductivity`` and in full contact."""
+        return self.summary.get("conductance")
 
     @cached_property
     def displacement(self) -> Floats:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from roughcontact import _core
 from roughcontact._foreign import tell
-from roughcontact._keys import Boundary, Grid, LengthUnit, Mask, Method, Missing, Path, plain
+from roughcontact._keys import Boundary, Conductivity, Grid, LengthUnit, Mask, Method, Missing, Path, plain
 from roughcontact._maps import Heights, map_parts
 from roughcontact._result import Result, told
 from roughcontact._run import Bar, Interrupted, NotConvergedError, NotConvergedWarning, ProgressOption, callback, checked
@@ -56,6 +56,7 @@ def solve(
     pressure: float | None = None,
     penetration: float | None = None,
     hardness: float | None = None,
+    conductivity: Conductivity | None = None,
     kernel: Kernel | None = None,
     boundary: Boundary | None = None,
     layer_thickness: float | None = None,
@@ -103,6 +104,8 @@ def solve(
         Mean pressure (Pa) or penetration (m). Give exactly one.
     hardness : float, optional
         Upper limit of the pressure (Pa), the usual first model of plastic contact. Default: no limit, an elastic contact.
+    conductivity : float, (float, float) or str, optional
+        Electrical (S/m) or thermal (W/(m K)) conductivity of both bodies, or of each, for :attr:`Result.conductance`.
     kernel : {"love", "spectral"} or callable, default "love"
         Discretisation of the half-space. A function ``f(kx, ky)`` of two arrays of wavenumbers (rad/m) returns the
         displacement (m) of a pressure wave of 1 Pa, which is ``2 / (E* |k|)`` for a half-space. The displacement must be

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from roughcontact import _core
 from roughcontact._foreign import tell
-from roughcontact._keys import Boundary, Grid, Mask, Method, Missing, Path, plain
+from roughcontact._keys import Boundary, Conductivity, Grid, Mask, Method, Missing, Path, plain
 from roughcontact._maps import Heights, equal_spacings, of_parts
 from roughcontact._result import Result
 from roughcontact._rows import FieldsAt, Found, Job, Workers, by_workers, here
@@ -63,6 +63,7 @@ def sweep(
     poisson: float | None = None,
     e_star: float | None = None,
     hardness: float | None = None,
+    conductivity: Conductivity | None = None,
     kernel: Kernel | None = None,
     boundary: Boundary | None = None,
     layer_thickness: float | None = None,

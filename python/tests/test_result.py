@@ -32,7 +32,12 @@ def test_fields_agree_with_the_numbers(result):
 
 def test_the_gap_closes_the_contact(result, heights):
     rest = result.gap - (result.displacement - heights)
-    assert np.ptp(rest) < 1e-9 * np.ptp(heights)
+    is_open = result.gap > 0
+    level = rest[is_open].mean()
+    assert np.ptp(rest[is_open]) < 1e-9 * np.ptp(heights)
+    # The gap is zero where the tolerance of the solve leaves an overlap.
+    overlap = rest[~is_open] - level
+    assert -1e-9 * np.ptp(heights) < overlap.min() and overlap.max() < 1.01 * result.penetration_error * np.ptp(heights)
 
 
 def test_spots_and_distribution_add_up_to_the_contact(result):

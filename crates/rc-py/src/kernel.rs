@@ -9,6 +9,7 @@ use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use rc_core::quantity::digits;
 use rc_core::{Grid, Kernel, Symbol, Units};
+use rc_kernel::Spectral;
 
 use crate::errors::bad_input;
 
@@ -180,6 +181,11 @@ impl Kernel for OwnKernel {
             let row = self.values.chunks_exact(self.max_ky + 1).nth(kx);
             row.and_then(|row| row.get(ky)).copied().unwrap_or(f64::NAN)
         })
+    }
+
+    /// Conductivities are uniform, whatever the elastic moduli are.
+    fn half_space(&self) -> Option<&dyn Kernel> {
+        Some(&Spectral)
     }
 
     fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {

@@ -183,19 +183,30 @@ pub struct SolveContext {
     pub conductivity: Option<f64>,
 }
 
+/// The tolerance relative to the range of heights, and that of the energy.
+fn tolerances(bound: ErrorBound) -> [Option<f64>; 2] {
+    match bound {
+        ErrorBound::Relative(value) => [Some(value), None],
+        ErrorBound::Energy(value) => [None, Some(value)],
+    }
+}
+
+/// Conductance for unit conductivity and its error (1/m). There is none in full contact.
+fn conductance(solution: &Solution<'_>, units: Units) -> [Option<f64>; 2] {
+    // A conductance in 1/λ is a stiffness in E*/λ per E*.
+    let per_metre = |value| units.pascals_per_metre(value) / units.elasticity().e_star();
+    let value = Some(per_metre(solution.conductance())).filter(|value| value.is_finite());
+    [value, value.map(|_| per_metre(solution.conductance_error()))]
+}
+
 impl Summary {
     /// The summary of `solution` in SI units. Its memory is the peak of the process so far.
     #[must_use]
     pub fn of(solution: &Solution<'_>, units: Units, context: &SolveContext) -> Self {
         let (info, observables, grid) = (solution.info(), solution.observables(), solution.grid());
         let stiffness = units.pascals_per_metre(solution.stiffness());
-        // A conductance in 1/λ is a stiffness in E*/λ per E*.
-        let per_metre = |value| units.pascals_per_metre(value) / units.elasticity().e_star();
-        let conductance = Some(per_metre(solution.conductance())).filter(|value| value.is_finite());
-        let (tolerance, energy_tolerance) = match solution.bound() {
-            ErrorBound::Relative(value) => (Some(value), None),
-            ErrorBound::Energy(value) => (None, Some(value)),
-        };
+        let [conductance, error_of_conductance] = conductance(solution, units);
+        let [tolerance, energy_tolerance] = tolerances(solution.bound());
         Self {
             status: solution.status().name().to_owned(),
             control: context.control.key().to_owned(),
@@ -227,7 +238,7 @@ impl Summary {
             mean_gap_error: Some(units.metres(observables.mean_gap_error)),
             contact_stiffness: Some(stiffness).filter(|value| value.is_finite()),
             contact_conductance: conductance,
-            contact_conductance_error: conductance.map(|_| per_metre(solution.conductance_error())),
+            contact_conductance_error: error_of_conductance,
             conductance: conductance.zip(context.conductivity).map(|(per_unit, of_bodies)| per_unit * of_bodies),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),

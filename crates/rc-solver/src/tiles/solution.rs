@@ -229,7 +229,9 @@ impl Solved for TileSolution<'_> {
                 }
             } else {
                 // Without a hardness, the pressure does not matter.
-                rows.iter_mut().for_each(|g| *g = part.of(*g, 0.0, f64::INFINITY));
+                for gap in &mut rows {
+                    *gap = part.of(*gap, 0.0, f64::INFINITY);
+                }
             }
             take(first, &rows)
         })
