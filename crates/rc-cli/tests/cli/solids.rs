@@ -179,7 +179,9 @@ fn a_layer_leaks_and_conducts_by_its_spots() {
     assert!(text(&solved.stdout).contains("\n  conductance  "), "{}", text(&solved.stdout));
     let on_layer = place.json("layer/summary.json");
     let [of_layer, of_half_space] = [&on_layer, &on_half_space].map(|found| number(found, "contact_conductance"));
-    assert!(of_layer < of_half_space && of_layer > 0.5 * of_half_space, "{of_layer}, {of_half_space}: fewer spots");
+    assert!(of_layer < of_half_space, "{of_layer}, {of_half_space}: fewer spots");
+    // Another program solved the potential of these spots with the symbol 2/|q|.
+    assert_close("conductance of the spots", of_layer, 56.8735, 0.01);
     let permeance = |summary: &Value| summary["leakage"]["permeance"][0].as_f64().expect("a permeance");
     assert!(permeance(&on_layer) > permeance(&on_half_space), "less contact, and a wider gap");
 }
