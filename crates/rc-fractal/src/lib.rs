@@ -38,6 +38,7 @@ mod params;
 mod power;
 mod radial;
 mod surface;
+mod table;
 mod waves;
 
 pub use hurst::{HurstFit, fit_hurst};
@@ -46,4 +47,5 @@ pub use params::{Amplitudes, MAX_WAVES, Normalisation, SpectrumError, SpectrumPa
 pub use radial::{SpectrumBin, radial_spectrum};
 pub use rc_fft::Complex64;
 pub use surface::{SampleError, Surface};
+pub use table::{SpectrumTable, TableError};
 pub use waves::{Wave, WaveError};

@@ -9,8 +9,9 @@ use thiserror::Error;
 
 use crate::draws::draw_column;
 use crate::moments::SpectralSums;
+use crate::table::SpectrumTable;
 use crate::waves::{Wave, WaveError, columns_of_waves};
-use crate::{Moments, Normalisation, SpectrumError, SpectrumParams};
+use crate::{Amplitudes, Moments, Normalisation, SpectrumError, SpectrumParams};
 
 /// A band-limited surface of zero mean height on the unit cell.
 ///
@@ -82,6 +83,21 @@ impl Surface {
     pub fn from_waves(waves: Vec<Wave>) -> Result<Self, WaveError> {
         let (columns, waves) = columns_of_waves(waves)?;
         Ok(Self { params: None, waves, columns })
+    }
+
+    /// A realisation of a tabulated spectrum.
+    ///
+    /// Phases, and the factors of random amplitudes, are those of [`Surface::new`] with this seed. With fixed amplitudes
+    /// |`a_k`|² is (2π)² C(|k|) for every wave.
+    #[must_use]
+    pub fn from_table(table: &SpectrumTable, amplitudes: Amplitudes, seed: u64) -> Self {
+        let column = |kx: usize| {
+            let reach = table.reach(kx);
+            let size = |k_squared: f64| rms_amplitude(table.density(k_squared.sqrt()));
+            scaled_column(kx, draw_column(seed, kx, reach, amplitudes), size)
+        };
+        let columns = (0..=table.waves()).into_par_iter().map(column).collect();
+        Self { params: None, waves: table.waves(), columns }
     }
 
     /// The surface with all heights multiplied by `factor`. It has no [`Surface::params`].
@@ -197,10 +213,15 @@ fn rms_amplitude(density: f64) -> f64 {
 ///
 /// Their mean squares follow Eq. (13).
 fn relative_column(params: &SpectrumParams, kx: usize) -> Vec<Complex64> {
-    let reach = params.reach(kx);
-    let mut column = draw_column(params.seed, kx, reach, params.amplitudes);
+    let column = draw_column(params.seed, kx, params.reach(kx), params.amplitudes);
+    scaled_column(kx, column, |k_squared| params.relative_amplitude(k_squared))
+}
+
+/// The column of kx with the amplitude of each wave multiplied by `size` of its |k|².
+fn scaled_column(kx: usize, mut column: Vec<Complex64>, size: impl Fn(f64) -> f64) -> Vec<Complex64> {
+    let reach = reach(&column);
     for ky in 0..=reach {
-        let size = params.relative_amplitude((kx * kx + ky * ky) as f64);
+        let size = size((kx * kx + ky * ky) as f64);
         column[reach + ky] *= size;
         if ky > 0 {
             column[reach - ky] *= size;

@@ -14,7 +14,8 @@
 //!
 //! If a file has several [`channels`], [`read`] takes the first with heights, and [`read_with`] takes a given one.
 //! [`Treatment`]s level, fill, crop, flip, filter and resample a map and make it periodic. [`AreaParameters`] are those
-//! of ISO 25178-2. Module [`spectrum`] reads surfaces that are given by Fourier coefficients instead.
+//! of ISO 25178-2. Module [`spectrum`] reads surfaces that are given by Fourier coefficients instead, and
+//! module [`pairs`] tables of spectra and profiles.
 //!
 //! This crate passes on the units of a file, and [`HeightMap::in_metres`] applies them once. Row 0 of a field is the
 //! lowest, so rows are reversed where the first row of a file is the top of its picture
@@ -46,6 +47,7 @@ mod error;
 mod formats;
 mod map;
 mod note;
+pub mod pairs;
 mod parameters;
 pub mod spectrum;
 mod statistics;

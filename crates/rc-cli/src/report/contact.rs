@@ -117,6 +117,7 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
     let keys = &scene.surface;
     let surface = match (keys.file(), keys.waves, keys.hurst, keys.seed) {
         (Some(("spectrum", _)), ..) => "a surface of given waves".to_owned(),
+        (Some(("psd", _)), _, _, Some(seed)) => format!("a surface of a tabulated spectrum, seed {seed}"),
         (Some(_), ..) => "a height map".to_owned(),
         (None, Some(waves), Some(hurst), Some(seed)) => format!("{waves} waves, H = {hurst}, seed {seed}"),
         _ => "a random surface".to_owned(),

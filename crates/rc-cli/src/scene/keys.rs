@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::names::{amplitudes, boundaries, methods, truncations};
 use super::time_limit::TimeLimit;
-use super::values::{Conductivity, Fraction, GridSpec, Marks, ToleranceSpec};
+use super::values::{Conductivity, Fraction, GridSpec, HeightsLike, Marks, PsdConvention, ToleranceSpec};
 use crate::help;
 
 /// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4.
@@ -42,6 +42,27 @@ pub struct SurfaceKeys {
     #[arg(long, value_name = "FILE", help_heading = help::FILES)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spectrum: Option<PathBuf>,
+    /// Table of an isotropic spectrum: lines q C (rad/m, m⁴)
+    ///
+    /// ⟨h²⟩ = ∫ C d²q. There are no waves outside the table. Phases are random (--seed).
+    #[arg(long, value_name = "FILE", help_heading = help::FILES)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub psd: Option<PathBuf>,
+    /// plain: ⟨h²⟩ = ∫ C d²q; fourier: ⟨h²⟩ = ∫ C d²q/4π² [default: plain]
+    #[arg(long, value_name = "NAME", help_heading = help::FILES, hide_possible_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub psd_convention: Option<PsdConvention>,
+    /// Twin of a map (spectrum and heights), or of a profile x z (spectrum)
+    ///
+    /// FILE is a height map, a folder of rc surface or rc prepare with one, or a text of two columns. The twin has the
+    /// size and the grid of the map, unless --cell and --grid say otherwise. --seed gives another twin.
+    #[arg(long, value_name = "FILE", help_heading = help::FILES)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub like: Option<PathBuf>,
+    /// Heights of a twin: map (those of the map) or gaussian [default: map]
+    #[arg(long, value_name = "NAME", help_heading = help::FILES, hide_possible_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heights_like: Option<HeightsLike>,
     /// Unit of lengths in a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]
     #[arg(long, value_name = "UNIT", help_heading = help::FILES)]
     pub unit: Option<LengthUnit>,
@@ -296,8 +317,19 @@ impl SurfaceKeys {
     /// `None` for a random surface.
     #[must_use]
     pub fn file(&self) -> Option<(&'static str, &Path)> {
-        let heights = self.heights.as_deref().map(|path| ("heights", path));
-        heights.or_else(|| self.spectrum.as_deref().map(|path| ("spectrum", path)))
+        self.files().next()
+    }
+
+    /// The files that are given for the surface, with their keys. Only one of them may be given.
+    pub(crate) fn files(&self) -> impl Iterator<Item = (&'static str, &Path)> {
+        let files = [("heights", &self.heights), ("spectrum", &self.spectrum), ("psd", &self.psd), ("like", &self.like)];
+        files.into_iter().filter_map(|(key, path)| path.as_deref().map(|path| (key, path)))
+    }
+
+    /// Whether the surface is a realisation of a measured spectrum, which has a seed.
+    #[must_use]
+    pub fn is_realisation(&self) -> bool {
+        self.psd.is_some() || self.like.is_some()
     }
 
     /// The known units of a height map or of coefficients.
@@ -326,6 +358,12 @@ impl SurfaceKeys {
         self.channel.is_some() || self.layout.is_some() || self.missing.is_some() || self.mask.is_some()
     }
 
+    /// Whether any parameter of a self-affine spectrum is given.
+    #[must_use]
+    pub fn has_law(&self) -> bool {
+        Self { seed: None, amplitudes: None, ..self.clone() }.generates()
+    }
+
     /// Whether any parameter of a random surface is given.
     #[must_use]
     pub fn generates(&self) -> bool {
@@ -345,7 +383,8 @@ impl Scene {
     /// The scene with its relative paths taken from `folder`.
     #[must_use]
     pub fn relative_to(mut self, folder: &Path) -> Self {
-        for path in [&mut self.surface.heights, &mut self.surface.spectrum, &mut self.run.out].into_iter().flatten() {
+        let SurfaceKeys { heights, spectrum, psd, like, .. } = &mut self.surface;
+        for path in [heights, spectrum, psd, like, &mut self.run.out].into_iter().flatten() {
             *path = folder.join(&*path);
         }
         self

@@ -12,3 +12,4 @@ pub mod wave_file;
 
 pub mod heights;
 mod names;
+pub mod psd_file;

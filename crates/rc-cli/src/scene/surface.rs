@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use rc_core::quantity::digits;
 use rc_core::{Boundary, Field, Grid, HeightSource, PeriodicCell};
 use rc_fractal::{
-    Moments, SpectrumParams, Surface, height_and_slope_of_grid, height_and_slope_of_patch, moments_of_grid,
+    Amplitudes, Moments, SpectrumParams, Surface, height_and_slope_of_grid, height_and_slope_of_patch, moments_of_grid,
 };
 use rc_heights::{HeightMap, ReadParams, Scales};
 
@@ -17,7 +17,8 @@ use super::as_read::AsRead;
 use super::heights::{self, CellOfMap};
 use super::keys::SurfaceKeys;
 use super::values::GridSpec;
-use super::wave_file::{WAVES_FILE, WaveFile};
+use super::psd_file::PsdFile;
+use super::wave_file::{PSD_FILE, WAVES_FILE, WaveFile};
 use crate::error::CliError;
 use crate::files::names::HEIGHTS_FILE;
 use crate::warnings;
@@ -70,6 +71,19 @@ pub enum Source {
         /// The finest grid.
         grid: Grid,
     },
+    /// A realisation of a tabulated spectrum.
+    Spectrum {
+        /// The file of the table, or of the profile that it is from.
+        path: PathBuf,
+        /// The table.
+        table: Arc<PsdFile>,
+        /// Amplitudes of the waves.
+        amplitudes: Amplitudes,
+        /// Seed of the realisation.
+        seed: u64,
+        /// The finest grid.
+        grid: Grid,
+    },
 }
 
 /// A surface whose heights can be evaluated.
@@ -96,7 +110,7 @@ pub struct LoadedSurface {
 pub enum Shape {
     /// A random surface, which has heights anywhere.
     Random(Arc<Surface>),
-    /// A surface of the waves in a file, which has heights anywhere.
+    /// A surface of the waves or of the spectrum in a file, which has heights anywhere.
     Waves(Arc<WaveFile>),
     /// A height map.
     Map {
@@ -147,7 +161,7 @@ impl SurfaceSetup {
     #[must_use]
     pub fn max_elements(&self) -> f64 {
         match &self.source {
-            Source::Random { grid, .. } | Source::Waves { grid, .. } => grid.len() as f64,
+            Source::Random { grid, .. } | Source::Waves { grid, .. } | Source::Spectrum { grid, .. } => grid.len() as f64,
             // A useful map has at least two bytes per height.
             Source::File { path, .. } => path.metadata().map_or(0.0, |file| file.len() as f64 / 2.0),
         }
@@ -175,6 +189,11 @@ impl SurfaceSetup {
             Source::Waves { waves, grid, .. } => {
                 let keys = SurfaceKeys { spectrum: Some(WAVES_FILE.into()), ..self.keys.clone() };
                 Ok(LoadedSurface::of_waves(Shape::Waves(Arc::clone(waves)), *grid, keys))
+            }
+            Source::Spectrum { table, amplitudes, seed, grid, .. } => {
+                let waves = table.realisation(*amplitudes, *seed)?;
+                let keys = SurfaceKeys { psd: Some(PSD_FILE.into()), ..self.keys.clone() };
+                Ok(LoadedSurface::of_waves(Shape::Waves(Arc::new(waves)), *grid, keys))
             }
         }
     }
@@ -307,7 +326,7 @@ impl LoadedSurface {
         }
     }
 
-    /// The file that has the waves of the surface; `None` for other surfaces.
+    /// The file that has the waves or the spectrum of the surface; `None` for other surfaces.
     #[must_use]
     pub fn wave_file(&self) -> Option<&Arc<WaveFile>> {
         match &self.shape {

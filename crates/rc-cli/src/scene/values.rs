@@ -1,8 +1,10 @@
 //! Values of a scene that are more than a number: grids, tolerances, fractions.
 
+use std::f64::consts::TAU;
 use std::fmt;
 use std::str::FromStr;
 
+use clap::ValueEnum;
 use rc_solver::Tolerance;
 use rc_sweep::number_or_text;
 use serde::de::{self, Deserializer, Visitor};
@@ -152,6 +154,38 @@ impl<'de> Deserialize<'de> for Conductivity {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         number_or_text(deserializer, "a number such as 400, or \"400,50\"")
     }
+}
+
+/// The convention of a tabulated spectrum.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum PsdConvention {
+    /// ⟨h²⟩ = ∫ C d²q, as that of `c0` and `rc inspect`.
+    #[default]
+    Plain,
+    /// ⟨h²⟩ = ∫ C d²q/4π².
+    Fourier,
+}
+
+impl PsdConvention {
+    /// C of this convention for C = 1 of `Plain`.
+    #[must_use]
+    pub fn factor(self) -> f64 {
+        match self {
+            Self::Plain => 1.0,
+            Self::Fourier => TAU * TAU,
+        }
+    }
+}
+
+/// The height distribution of a twin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum HeightsLike {
+    /// Gaussian, from random phases.
+    Gaussian,
+    /// That of the map.
+    Map,
 }
 
 /// The tolerance in its written form: a number or `auto`.

@@ -1,24 +1,35 @@
-//! Surfaces from files of Fourier coefficients.
+//! Surfaces of waves that come from a file: Fourier coefficients, or a tabulated spectrum.
 
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
 use rc_fractal::{Complex64, Moments, Surface, Wave};
 use rc_heights::spectrum::{self, Coefficient};
-use rc_heights::{LengthUnit, Scales};
+use rc_heights::{LengthUnit, Scales, pairs};
 
 use crate::error::CliError;
 
 /// Name of a file of coefficients in a result folder.
 pub(crate) const WAVES_FILE: &str = "spectrum.txt";
 
-/// A file of coefficients and its surface.
+/// Name of the table of a spectrum in a result folder.
+pub(crate) const PSD_FILE: &str = "psd.csv";
+
+/// The content of a file and its surface.
 ///
-/// The coefficients are kept as read, since a result is repeated bit for bit only from these.
+/// The content is kept as read, since a result is repeated bit for bit only from it.
 #[derive(Clone, Debug)]
 pub struct WaveFile {
-    coefficients: Vec<Coefficient>,
+    content: Content,
     surface: Arc<Surface>,
+}
+
+#[derive(Clone, Debug)]
+enum Content {
+    Coefficients(Vec<Coefficient>),
+    /// Wavenumbers (rad/m) and spectrum (m⁴) in the convention of the keys.
+    Spectrum(Vec<[f64; 2]>),
 }
 
 impl WaveFile {
@@ -45,7 +56,12 @@ impl WaveFile {
                 format_args!("an rms height of {rms_height:e} cell sides is out of range; check cell and unit");
             return Err(CliError::in_file(path, message));
         }
-        Ok(Self { coefficients, surface: Arc::new(surface) })
+        Ok(Self { content: Content::Coefficients(coefficients), surface: Arc::new(surface) })
+    }
+
+    /// A realisation of the spectrum in `rows` (rad/m, m⁴).
+    pub(super) fn of_spectrum(rows: Vec<[f64; 2]>, surface: Surface) -> Self {
+        Self { content: Content::Spectrum(rows), surface: Arc::new(surface) }
     }
 
     /// The surface on the unit cell.
@@ -54,9 +70,23 @@ impl WaveFile {
         &self.surface
     }
 
-    /// The coefficients in the unit of the file, in its order.
+    /// Name of the file in a result folder.
     #[must_use]
-    pub(crate) fn coefficients(&self) -> &[Coefficient] {
-        &self.coefficients
+    pub(crate) fn name(&self) -> &'static str {
+        match self.content {
+            Content::Coefficients(_) => WAVES_FILE,
+            Content::Spectrum(_) => PSD_FILE,
+        }
+    }
+
+    /// Writes the content as it was read.
+    ///
+    /// # Errors
+    /// Errors of the file system.
+    pub(crate) fn write(&self, path: &Path) -> io::Result<()> {
+        match &self.content {
+            Content::Coefficients(coefficients) => spectrum::write(path, coefficients),
+            Content::Spectrum(rows) => pairs::write(path, "q (rad/m), C (m^4)", rows),
+        }
     }
 }

@@ -7,7 +7,6 @@ use std::time::Duration;
 
 use rc_core::{DVec2, Field, Grid, Units};
 use rc_heights::npy::RowWriter;
-use rc_heights::spectrum;
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution};
 use rc_sweep::files::{FileError, Staged};
@@ -26,7 +25,7 @@ use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
 use crate::scene::resolve::ContactSetup;
 use crate::scene::values::{Conductivity, GridSpec};
-use crate::scene::wave_file::{WAVES_FILE, WaveFile};
+use crate::scene::wave_file::WaveFile;
 use crate::warnings::result::after;
 
 /// A solution with the data that its summary and its files need.
@@ -151,7 +150,7 @@ impl ResultFiles<'_> {
             staged.add(HEIGHTS_FILE, |path| map.write(path))?;
         }
         if let Some(waves) = self.waves {
-            staged.add(WAVES_FILE, |path| spectrum::write(path, waves.coefficients()))?;
+            staged.add(waves.name(), |path| waves.write(path))?;
         }
         staged.add_text(SCENE_FILE, &self.scene())?;
         staged.add_text(SUMMARY_FILE, &summary.to_json())?;

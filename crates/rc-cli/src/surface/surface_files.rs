@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use rc_core::Field;
-use rc_heights::{gsf, netcdf, npy, spectrum, text};
+use rc_heights::{gsf, netcdf, npy, text};
 use rc_plot::{Map, MapPicture, Palette, Shade, save_png};
 use rc_sweep::files::{self, FileError, Staged};
 use rc_sweep::to_json;
@@ -13,7 +13,6 @@ use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SCENE_FILE};
 use crate::inspect::record::SurfaceRecord;
 use crate::scene::file;
 use crate::scene::surface::LoadedSurface;
-use crate::scene::wave_file::WAVES_FILE;
 
 /// A format of the heights alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,7 +79,7 @@ pub(super) fn write_folder(
 ) -> Result<(), FileError> {
     let (field, factor) = in_metres(surface, heights, side);
     // A generated surface has a default material, the others have none.
-    let material = if surface.keys.heights.is_some() || surface.keys.spectrum.is_some() { "--e-star ... " } else { "" };
+    let material = if surface.keys.file().is_some() { "--e-star ... " } else { "" };
     let scene = format!(
         "# The surface; `rc solve scene.toml {material}--pressure ...` presses it.\n\n{}",
         file::to_toml(&surface.keys)
@@ -91,7 +90,7 @@ pub(super) fn write_folder(
     let mut staged = Staged::new(folder)?;
     staged.add(HEIGHTS_FILE, |path| npy::write(path, &field, factor))?;
     if let Some(waves) = surface.wave_file() {
-        staged.add(WAVES_FILE, |path| spectrum::write(path, waves.coefficients()))?;
+        staged.add(waves.name(), |path| waves.write(path))?;
     }
     staged.add("surface.png", |path| save_png(&picture, path))?;
     staged.add_text(SCENE_FILE, &scene)?;

@@ -167,7 +167,7 @@ impl SweptSurface {
         contact: &ContactKeys,
         (control, loads): (ControlKind, &[f64]),
     ) -> Result<Self, CliError> {
-        let seed = setup.keys.seed.filter(|_| matches!(setup.source, Source::Random { .. }));
+        let seed = setup.keys.seed.filter(|_| setup.keys.is_realisation() || matches!(setup.source, Source::Random { .. }));
         let keys = with_load(control, contact, loads.first().copied());
         let contact = resolve::contact(keys, setup.cell)?;
         setup.may_be_flat = contact.boundary == Boundary::Free;
@@ -205,6 +205,10 @@ impl SweptSurface {
             }
             Source::Waves { path, .. } => {
                 surface.spectrum = path.file_name().map(Into::into);
+                Some(FileMark::of(path)?)
+            }
+            Source::Spectrum { path, .. } => {
+                surface.psd = path.file_name().map(Into::into);
                 Some(FileMark::of(path)?)
             }
         };
@@ -336,7 +340,7 @@ fn loads(args: &SweepArgs, control: ControlKind, keys: &ContactKeys) -> Result<V
 /// The scene with each of the seeds, or unchanged without seeds.
 pub(super) fn seeded(seeds: Option<&Seeds>, name: &str, scene: &Scene) -> Result<Vec<Scene>, CliError> {
     let Some(Seeds(seeds)) = seeds else { return Ok(vec![scene.clone()]) };
-    if let Some((key, _)) = scene.surface.file() {
+    if let Some((key @ ("heights" | "spectrum"), _)) = scene.surface.file() {
         let what = if key == "heights" { "height map" } else { "file of waves" };
         let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
         return Err(CliError::input(format_args!("seeds: the {what}{of} has no seed; omit --seeds")));

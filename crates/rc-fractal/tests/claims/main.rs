@@ -4,6 +4,7 @@ mod moments;
 mod parameters;
 mod sampling;
 mod spectrum;
+mod table;
 mod waves;
 
 use rc_fractal::{SpectrumParams, Surface};

@@ -10,15 +10,20 @@ macro_rules! or_lower {
 impl SurfaceKeys {
     /// These keys laid over `lower`.
     ///
-    /// A key given here removes its alternatives in `lower`. A height map, a file of waves and the parameters of a
-    /// random surface are alternatives. So are `rms`, `rms_slope` and `c0`. A `cell` removes the other side.
+    /// A key given here removes its alternatives in `lower`. A height map, a file of waves, a measured
+    /// spectrum and the parameters of a random surface are alternatives. A seed alone is that of a measured spectrum below. So are `rms`, `rms_slope` and `c0`. A `cell` removes the other side.
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
         if self.heights.is_some() {
             lower = Self { cell: lower.cell, cell_y: lower.cell_y, ..Self::default() };
         } else if self.spectrum.is_some() {
             lower = Self { cell: lower.cell, ..Self::default() };
-        } else if self.generates() {
+        } else if self.psd.is_some() {
+            lower = Self { cell: lower.cell, ..Self::default() };
+        } else if self.like.is_some() {
+            lower = Self { cell: lower.cell, cell_y: lower.cell_y, ..Self::default() };
+        } else if self.has_law() || self.generates() && !lower.is_realisation() {
+            (lower.psd, lower.psd_convention, lower.like, lower.heights_like) = (None, None, None, None);
             lower = Self { heights: None, spectrum: None, unit: None, height_scale: None, cell_y: None, ..lower };
             (lower.channel, lower.layout, lower.height_unit) = (None, None, None);
             (lower.missing, lower.mask) = (None, None);
@@ -30,7 +35,7 @@ impl SurfaceKeys {
             (lower.rms, lower.rms_slope, lower.c0) = (None, None, None);
         }
         or_lower!(self, lower, {
-            cell, cell_y, heights, spectrum, unit, height_unit, height_scale, missing, mask, channel, layout, waves, hurst, rms, rms_slope,
+            cell, cell_y, heights, spectrum, psd, psd_convention, like, heights_like, unit, height_unit, height_scale, missing, mask, channel, layout, waves, hurst, rms, rms_slope,
             c0, seed, truncation, roll_off, low_cut, amplitudes, grid, read_limit
         });
         self

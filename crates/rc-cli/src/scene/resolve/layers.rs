@@ -72,10 +72,12 @@ fn check_alternatives(scene: &Scene) -> Result<(), String> {
     if surface.grid.is_some() && contact.area_error.is_some() {
         return Err("area_error chooses the grid; give either area_error or grid".into());
     }
-    if surface.heights.is_some() && surface.spectrum.is_some() {
-        return Err("heights and spectrum both define the surface; give one of them".into());
+    let mut files = surface.files().map(|(key, _)| key);
+    if let (Some(first), Some(second)) = (files.next(), files.next()) {
+        return Err(format!("{first} and {second} both define the surface; give one of them"));
     }
-    if let (Some((key, _)), true) = (surface.file(), surface.generates()) {
+    let is_random = if surface.is_realisation() { surface.has_law() } else { surface.generates() };
+    if let (Some((key, _)), true) = (surface.file(), is_random) {
         return Err(format!(
             "{key} defines the surface; omit the parameters of a random surface (waves, hurst, rms, ...)"
         ));

@@ -35,7 +35,12 @@ pub fn check_cell_and_material(surface: &SurfaceKeys, contact: &ContactKeys) -> 
 
 fn check(surface: &SurfaceKeys, missing: impl IntoIterator<Item = &'static str>) -> Result<(), CliError> {
     let missing: Vec<&str> = missing.into_iter().collect();
-    let what = if surface.spectrum.is_some() { "spectrum: a file of waves" } else { "heights: a height map" };
+    let what = match surface.file() {
+        Some(("spectrum", _)) => "spectrum: a file of waves",
+        Some(("psd", _)) => "psd: a table of a spectrum",
+        Some(("like", _)) => "like: a twin",
+        _ => "heights: a height map",
+    };
     match surface.file() {
         Some(_) if !missing.is_empty() => Err(CliError::input(format_args!(
             "{what} needs {} too; the default values are for random surfaces only",
@@ -54,7 +59,8 @@ const CELL: &str = "cell (m)";
 fn size(surface: &SurfaceKeys) -> Result<Option<&'static str>, CliError> {
     let is_known = match &surface.heights {
         Some(path) => surface.cell.is_some() || rc_heights::may_have_sides(path, &surface.read_params())?,
-        None => surface.cell.is_some() || surface.spectrum.is_none(),
+        // The size of a twin is that of its map, which is read later.
+        None => surface.cell.is_some() || surface.spectrum.is_none() && surface.psd.is_none(),
     };
     Ok((!is_known).then_some(CELL))
 }

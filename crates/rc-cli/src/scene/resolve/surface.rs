@@ -1,6 +1,6 @@
 //! The step from keys to a checked surface.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use rc_core::{Grid, PeriodicCell};
@@ -12,6 +12,7 @@ use crate::error::CliError;
 use crate::scene::file;
 use crate::scene::heights::{self, CellOfMap};
 use crate::scene::keys::SurfaceKeys;
+use crate::scene::psd_file::PsdFile;
 use crate::scene::surface::{Source, SurfaceSetup};
 use crate::scene::values::GridSpec;
 use crate::scene::wave_file::WaveFile;
@@ -20,6 +21,9 @@ use crate::scene::wave_file::WaveFile;
 ///
 /// The side of an element is then `λ_min/32`.
 const ELEMENTS_PER_WAVE: usize = 32;
+
+/// Seed of a realisation of a measured spectrum without a given one.
+const FIRST_SEED: u64 = 1;
 
 /// Checks the keys of the surface, with defaults from the embedded example.
 ///
@@ -47,13 +51,19 @@ pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
     let side_y = keys.cell_y.map_or(Ok(side), |side_y| positive("cell_y", "m", Some(side_y)))?;
     let cell = PeriodicCell::rectangle(side, side_y).map_err(CliError::input)?;
     let grid = keys.grid.map(checked_grid).transpose()?;
+    if keys.psd_convention.is_some() && keys.psd.is_none() {
+        return Err(CliError::input("psd_convention: applies to tables of a spectrum; give --psd FILE, or omit it"));
+    }
     match (keys.heights.clone(), keys.spectrum.clone()) {
         (Some(path), _) => {
             let source = Source::File { path, expected: grid, params: keys.read_params(), scales: keys.scales() };
             Ok(SurfaceSetup::new(cell, source, keys))
         }
         (None, Some(path)) => of_waves(keys, &path, cell, grid),
-        (None, None) => random(keys, cell, grid),
+        (None, None) => match keys.psd.clone() {
+            Some(path) => of_spectrum(keys, path, cell, grid),
+            None => random(keys, cell, grid),
+        },
     }
 }
 
@@ -91,6 +101,48 @@ fn of_waves(keys: SurfaceKeys, path: &Path, cell: PeriodicCell, grid: Option<Gri
     let grid = resolving_grid(grid, waves.surface().waves())?;
     let keys = SurfaceKeys { grid: Some(GridSpec { nx: grid.nx(), ny: grid.ny() }), ..keys };
     Ok(SurfaceSetup::new(cell, Source::Waves { path: path.to_owned(), waves, grid }, keys))
+}
+
+/// The setup of a realisation of a tabulated spectrum, on a grid that resolves its waves.
+fn of_spectrum(
+    keys: SurfaceKeys,
+    path: PathBuf,
+    cell: PeriodicCell,
+    grid: Option<Grid>,
+) -> Result<SurfaceSetup, CliError> {
+    if keys.cell_y.is_some() {
+        return Err(CliError::input("cell_y: applies to height maps; a surface of waves has a square cell, so omit it"));
+    }
+    if keys.scales() != Scales::default() || keys.reads_in_a_way() {
+        return Err(CliError::input(
+            "psd: a table is in rad/m and m^4; omit unit, height_unit, height_scale, channel, layout, missing and mask",
+        ));
+    }
+    let convention = keys.psd_convention.unwrap_or_default();
+    let table = PsdFile::read(&path, convention, (cell.side(), keys.read_params().max_bytes))?;
+    let grid = resolving_grid(grid, table.waves())?;
+    realisation(keys, (path, table), cell, grid)
+}
+
+/// The setup of a realisation of the spectrum in `table`.
+fn realisation(
+    keys: SurfaceKeys,
+    (path, table): (PathBuf, PsdFile),
+    cell: PeriodicCell,
+    grid: Grid,
+) -> Result<SurfaceSetup, CliError> {
+    let seed = checked_seed(keys.seed.unwrap_or(FIRST_SEED))?;
+    let amplitudes = keys.amplitudes.unwrap_or(Amplitudes::Fixed);
+    let spec = GridSpec { nx: grid.nx(), ny: grid.ny() };
+    let keys = SurfaceKeys { grid: Some(spec), seed: Some(seed), amplitudes: Some(amplitudes), ..keys };
+    Ok(SurfaceSetup::new(cell, Source::Spectrum { path, table: Arc::new(table), amplitudes, seed, grid }, keys))
+}
+
+/// Refuses a seed that cannot be written to the scene file that repeats the result.
+fn checked_seed(seed: u64) -> Result<u64, CliError> {
+    let is_written = i64::try_from(seed).is_ok();
+    let refuse = || CliError::input(format_args!("seed: must be at most {}, not {seed}", i64::MAX));
+    is_written.then_some(seed).ok_or_else(refuse)
 }
 
 /// The given grid, or one that resolves `waves` waves per cell well.
@@ -137,11 +189,7 @@ fn spectrum(keys: &SurfaceKeys, side: f64) -> Result<SpectrumParams, CliError> {
         let range = format_args!("low_cut: must be from 1 (none) to waves = {waves}, not {low_cut}");
         return Err(CliError::input(range));
     }
-    let seed = keys.seed.ok_or_else(|| missing("seed"))?;
-    if i64::try_from(seed).is_err() {
-        // A larger seed cannot be written to the scene file that repeats the result.
-        return Err(CliError::input(format_args!("seed: must be at most {}, not {seed}", i64::MAX)));
-    }
+    let seed = checked_seed(keys.seed.ok_or_else(|| missing("seed"))?)?;
     Ok(SpectrumParams {
         hurst,
         roll_off,
