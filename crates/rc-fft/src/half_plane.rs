@@ -20,13 +20,17 @@ const PANEL: usize = 8;
 /// The result has the half plane 0 ≤ kx ≤ nx/2 column by column: `values[kx * ny + (ky mod ny)]`. Phases are relative
 /// to the centre of the first element, which has x = 0 here.
 #[must_use]
-pub fn half_plane_values(field: &Field, offset: f64, value: impl Fn(Complex64) -> f64 + Sync) -> Vec<f64> {
+pub fn half_plane_values<T: Copy + Default + Send>(
+    field: &Field,
+    offset: f64,
+    value: impl Fn(Complex64) -> T + Sync,
+) -> Vec<T> {
     let ny = field.grid().ny();
     let width = field.grid().nx() / 2 + 1;
     let rows = transformed_rows(field, offset);
     let fft = f64::complex_forward(ny);
     let buffers = || (vec![Complex64::ZERO; PANEL * ny], vec![Complex64::ZERO; fft.get_inplace_scratch_len()]);
-    let mut values = vec![0.0; width * ny];
+    let mut values = vec![T::default(); width * ny];
     values.par_chunks_mut(PANEL * ny).enumerate().for_each_init(buffers, |(panel, scratch), (number, values)| {
         let panel = &mut panel[..values.len()];
         let (first, n_columns) = (number * PANEL, values.len() / ny);
@@ -57,6 +61,32 @@ fn transformed_rows(field: &Field, offset: f64) -> Vec<Complex64> {
         fft.process_with_scratch(row, spectrum, scratch).expect("every length is the plan's own");
     });
     rows
+}
+
+/// The real field Σ a exp(2πi k·x) on `grid`, from `waves` in the layout of [`half_plane_values`].
+///
+/// The waves of [`half_plane_values`] divided by the number of elements give the field back. In the columns kx = 0 and
+/// nx/2, which contain both k and -k, only the conjugate part counts.
+///
+/// # Panics
+/// Unless there are (nx/2 + 1) ny waves.
+#[must_use]
+pub fn field_of_half_plane(mut waves: Vec<Complex64>, grid: Grid) -> Field {
+    let (nx, ny) = (grid.nx(), grid.ny());
+    let width = nx / 2 + 1;
+    assert_eq!(waves.len(), width * ny, "waves of another grid");
+    let fft = f64::complex_inverse(ny);
+    let scratch = || vec![Complex64::ZERO; fft.get_inplace_scratch_len()];
+    waves.par_chunks_exact_mut(ny).enumerate().for_each_init(scratch, |scratch, (kx, column)| {
+        fft.process_with_scratch(column, scratch);
+        if kx > 0 && 2 * kx == nx {
+            // The sum over rows counts kx and -kx, which are one wave here.
+            column.iter_mut().for_each(|wave| *wave *= 0.5);
+        }
+    });
+    let mut field = Field::zeros(grid);
+    transform_rows(&waves, width, &mut field);
+    field
 }
 
 /// The field Σ a_k exp(2πi k·x) at the element centres of `grid`.
@@ -185,6 +215,18 @@ mod tests {
                 let error = (value - (wave.re - 2.0 * wave.im)).abs();
                 assert!(error <= 1e-12, "({kx}, {ky}) on {grid}: off by {error:.1e}");
             }
+        }
+    }
+
+    #[test]
+    fn a_field_comes_back_from_its_half_plane() {
+        for (nx, ny) in [(6, 5), (7, 20), (16, 12), (1, 3), (19, 1)] {
+            let field = Field::from_fn(Grid::new(nx, ny).expect("a grid"), |at| (9.0 * at.x).sin() + (at.y - 0.3).exp());
+            let per_element = 1.0 / field.grid().len() as f64;
+            let waves = half_plane_values(&field, 0.0, |wave| wave * per_element);
+            let back = field_of_half_plane(waves, field.grid());
+            let error = field.values().iter().zip(back.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error <= 1e-14 * 20.0, "{nx} x {ny}: off by {error:.1e}");
         }
     }
 

@@ -9,6 +9,7 @@
 //! | [`SymbolTable`] | table of the symbol of a convolution |
 //! | [`half_plane_values`] | forward transform of a real field, then a number for every wave of the half plane kx ≥ 0 |
 //! | [`field_of_columns`] | inverse transform of waves in the columns kx = 0, 1, … to a real field |
+//! | [`field_of_half_plane`] | inverse of a forward transform with [`half_plane_values`] |
 //! | [`powers_of_lines`] | transforms of rows and of columns, one axis at a time, and weighted sums of their powers |
 //! | [`TransformReal`] | one-dimensional transforms |
 //! | [`has_small_factors`] | whether transforms of a length are fast |
@@ -41,7 +42,7 @@ mod symbol_table;
 
 pub use convolution::{BLOCK_ROWS, Convolution};
 pub use factors::has_small_factors;
-pub use half_plane::{field_of_columns, half_plane_values};
+pub use half_plane::{field_of_columns, field_of_half_plane, half_plane_values};
 pub use instructions::Instructions;
 pub use lines::powers_of_lines;
 pub use plan::TransformReal;

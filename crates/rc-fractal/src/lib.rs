@@ -39,6 +39,7 @@ mod power;
 mod radial;
 mod surface;
 mod table;
+mod twin;
 mod waves;
 
 pub use hurst::{HurstFit, fit_hurst};
@@ -48,4 +49,5 @@ pub use radial::{SpectrumBin, radial_spectrum};
 pub use rc_fft::Complex64;
 pub use surface::{SampleError, Surface};
 pub use table::{SpectrumTable, TableError};
+pub use twin::{Twin, TwinParams};
 pub use waves::{Wave, WaveError};

@@ -40,6 +40,11 @@ impl PowerSpectrum {
         Self { nx, ny, values }
     }
 
+    /// The value of kx, and of the ky at this place of its column.
+    pub(crate) fn value(&self, kx: usize, place: usize) -> f64 {
+        self.values[kx * self.ny + place]
+    }
+
     /// The columns kx = 0, 1, …, nx/2.
     pub(crate) fn columns(&self) -> impl Iterator<Item = PowerColumn<'_>> {
         let own_mirror = |kx: usize| kx == 0 || 2 * kx == self.nx;

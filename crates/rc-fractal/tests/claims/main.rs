@@ -5,6 +5,7 @@ mod parameters;
 mod sampling;
 mod spectrum;
 mod table;
+mod twin;
 mod waves;
 
 use rc_fractal::{SpectrumParams, Surface};
