@@ -37,6 +37,7 @@ mod moments;
 mod params;
 mod power;
 mod radial;
+mod roughness;
 mod surface;
 mod table;
 mod twin;

@@ -7,15 +7,12 @@ use rc_fft::{Complex64, field_of_half_plane, half_plane_values};
 use crate::Amplitudes;
 use crate::draws::draw_column;
 use crate::power::PowerSpectrum;
+use crate::roughness::{Roughness, Waves};
 
-/// Maximum number of adjustments of amplitudes and heights.
-const MOST_ADJUSTMENTS: usize = 60;
-
-/// Deviation of the spectrum at which the adjustments end.
-const NEAR: f64 = 1e-3;
-
-/// Ratio of two successive deviations above which the adjustments end.
-const SLOW: f64 = 0.98;
+/// Adjustments of amplitudes and heights, before those with the roughness, with it, and after.
+///
+/// Those after it bring the spectrum back to a few percent. The roughness then changes little.
+const ADJUSTMENTS: [usize; 3] = [4, 12, 4];
 
 /// The grid of a twin, and which twin it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,8 +36,6 @@ pub struct Twin {
     pub heights: Field,
     /// Rms deviation of the amplitudes from those of the map, both times the wavenumber, relative to the rms slope.
     pub spectrum_deviation: f64,
-    /// Number of adjustments of heights.
-    pub adjustments: usize,
 }
 
 impl Twin {
@@ -52,36 +47,45 @@ impl Twin {
     ///
     /// With the heights of the map, amplitudes and ranks of heights are adjusted in turn, the ranks last (T. Schreiber
     /// and A. Schmitz, *Improved surrogate data for nonlinearity tests*, Phys. Rev. Lett. 77 (1996) 635). On the grid of
-    /// the map, the sorted heights are then exactly those of the map. The result is bitwise the same for any number of
-    /// threads.
+    /// the map, the sorted heights are then exactly those of the map. In between, the rms of each octave of waves is
+    /// adjusted at each height too, since a light contact depends on the roughness of summits. The result is bitwise the
+    /// same for any number of threads.
     #[must_use]
     pub fn of(map: &Field, waves: &Field, params: &TwinParams) -> Self {
         let amplitudes = Amplitude::of(waves, params);
         let grid = params.grid;
-        let mut field = field_of_half_plane(first_waves(&amplitudes, params), grid);
+        let first = field_of_half_plane(first_waves(&amplitudes, params), grid);
         // Waves that are their own opposites had phases that a real field cannot have.
-        let (mut waves, mut deviation) = amplitudes.applied_to(&field);
+        let (mut waves, _) = amplitudes.applied_to(&first);
         if !params.has_heights_of_map {
             let mut heights = field_of_half_plane(waves, grid);
             let mean = map.mean();
             heights.values_mut().par_iter_mut().for_each(|height| *height += mean);
             let (_, spectrum_deviation) = amplitudes.applied_to(&heights);
-            return Self { heights, spectrum_deviation, adjustments: 0 };
+            return Self { heights, spectrum_deviation };
         }
-        let sorted = quantiles(map, grid.len());
-        let mut adjustments = 0;
-        while adjustments < MOST_ADJUSTMENTS {
-            field = with_heights(&field_of_half_plane(waves, grid), &sorted);
-            adjustments += 1;
-            let before = deviation;
-            (waves, deviation) = amplitudes.applied_to(&field);
-            let is_slow = adjustments > 2 && deviation > SLOW * before;
-            if deviation < NEAR || is_slow {
-                break;
+        let (sorted, roughness) = (quantiles(map, grid.len()), roughness_of(map, grid.len()));
+        let [before, with, after] = ADJUSTMENTS;
+        let mut heights = first;
+        let mut spectrum_deviation = 0.0;
+        for round in 0..before + with + after {
+            let mut field = field_of_half_plane(waves.clone(), grid);
+            if (before..before + with).contains(&round) {
+                let of_twin = Waves { values: &waves, grid, scale: params.sides[0] };
+                field = roughness.applied_to(&of_twin, &ranks(&field));
             }
+            heights = with_heights(&field, &sorted);
+            (waves, spectrum_deviation) = amplitudes.applied_to(&heights);
         }
-        Self { heights: field, spectrum_deviation: deviation, adjustments }
+        Self { heights, spectrum_deviation }
     }
+}
+
+/// The roughness of a map for twins of `elements`.
+fn roughness_of(map: &Field, elements: usize) -> Roughness {
+    let per_element = 1.0 / map.grid().len() as f64;
+    let values = half_plane_values(map, map.mean(), |wave| wave * per_element);
+    Roughness::of(&Waves { values: &values, grid: map.grid(), scale: 1.0 }, &ranks(map), elements)
 }
 
 /// Amplitudes that the waves of a field must have.
@@ -205,15 +209,18 @@ fn quantiles(map: &Field, n: usize) -> Vec<f64> {
     (0..n).map(at).collect()
 }
 
-/// The field whose heights have the order of those of `field` and the values in `sorted`.
-///
-/// Equal heights are in the order of their elements.
-fn with_heights(field: &Field, sorted: &[f64]) -> Field {
+/// The elements in the order of their heights. Equal heights are in the order of their elements.
+fn ranks(field: &Field) -> Vec<usize> {
     let values = field.values();
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.par_sort_unstable_by(|&a, &b| values[a].total_cmp(&values[b]).then(a.cmp(&b)));
+    order
+}
+
+/// The field whose heights have the order of those of `field` and the values in `sorted`.
+fn with_heights(field: &Field, sorted: &[f64]) -> Field {
     let mut result = Field::zeros(field.grid());
-    for (&element, &height) in order.iter().zip(sorted) {
+    for (element, &height) in ranks(field).into_iter().zip(sorted) {
         result.values_mut()[element] = height;
     }
     result
