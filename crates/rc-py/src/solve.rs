@@ -148,7 +148,7 @@ impl Prepared {
 fn load(scene: &CheckedScene, map: Option<HeightMap>) -> Result<LoadedSurface, CliError> {
     let expected = match &scene.surface.source {
         Source::File { expected, .. } => *expected,
-        Source::Random { .. } | Source::Waves { .. } | Source::Spectrum { .. } => None,
+        Source::Random { .. } | Source::Waves { .. } | Source::Spectrum { .. } | Source::Twin { .. } => None,
     };
     match map {
         Some(map) => scene.surface.of_map(Path::new("heights"), map, expected),
@@ -159,7 +159,13 @@ fn load(scene: &CheckedScene, map: Option<HeightMap>) -> Result<LoadedSurface, C
 /// The caller's kernel on the grid of the scene.
 fn own_kernel(symbol: &Bound<'_, PyAny>, scene: &CheckedScene, map: Option<&HeightMap>) -> PyResult<OwnKernel> {
     let grid = match (&scene.surface.source, map) {
-        (Source::Random { grid, .. } | Source::Waves { grid, .. } | Source::Spectrum { grid, .. }, _) => *grid,
+        (
+            Source::Random { grid, .. }
+            | Source::Waves { grid, .. }
+            | Source::Spectrum { grid, .. }
+            | Source::Twin { grid, .. },
+            _,
+        ) => *grid,
         (_, Some(map)) => map.heights.grid(),
         (Source::File { .. }, None) => {
             let surface = scene.surface.clone();

@@ -15,8 +15,9 @@ use rc_heights::{HeightMap, ReadParams, Scales};
 
 use super::as_read::AsRead;
 use super::heights::{self, CellOfMap};
+use super::like::{self, Reference};
 use super::keys::SurfaceKeys;
-use super::values::GridSpec;
+use super::values::{GridSpec, HeightsLike};
 use super::psd_file::PsdFile;
 use super::wave_file::{PSD_FILE, WAVES_FILE, WaveFile};
 use crate::error::CliError;
@@ -39,6 +40,8 @@ pub struct SurfaceSetup {
     pub assumed: Vec<String>,
     /// The map of the file, which was read for its size. The first [`SurfaceSetup::load`] takes it.
     pub(crate) held: Arc<Mutex<Option<HeightMap>>>,
+    /// The map of a twin, likewise.
+    pub(crate) reference: Arc<Mutex<Option<Reference>>>,
 }
 
 /// Origin of the heights.
@@ -69,6 +72,19 @@ pub enum Source {
         /// Content of the file.
         waves: Arc<WaveFile>,
         /// The finest grid.
+        grid: Grid,
+    },
+    /// A twin of a height map.
+    Twin {
+        /// The map, or a folder with one.
+        like: PathBuf,
+        /// The keys that say how the map is read.
+        of_map: Box<SurfaceKeys>,
+        /// Height distribution of the twin.
+        heights: HeightsLike,
+        /// Seed of the twin.
+        seed: u64,
+        /// Its grid.
         grid: Grid,
     },
     /// A realisation of a tabulated spectrum.
@@ -146,12 +162,13 @@ impl SurfaceKeys {
 impl SurfaceSetup {
     /// A surface that is not flat, about which nothing was assumed.
     pub(crate) fn new(cell: PeriodicCell, source: Source, keys: SurfaceKeys) -> Self {
-        Self { cell, source, may_be_flat: false, keys, assumed: Vec::new(), held: Arc::default() }
+        Self { cell, source, may_be_flat: false, keys, assumed: Vec::new(), held: Arc::default(), reference: Arc::default() }
     }
 
     /// The setup without the map that was read for its size, for programs with many maps.
     pub(crate) fn without_map(mut self) -> Self {
         self.held = Arc::default();
+        self.reference = Arc::default();
         self
     }
 
@@ -161,7 +178,10 @@ impl SurfaceSetup {
     #[must_use]
     pub fn max_elements(&self) -> f64 {
         match &self.source {
-            Source::Random { grid, .. } | Source::Waves { grid, .. } | Source::Spectrum { grid, .. } => grid.len() as f64,
+            Source::Random { grid, .. }
+            | Source::Waves { grid, .. }
+            | Source::Spectrum { grid, .. }
+            | Source::Twin { grid, .. } => grid.len() as f64,
             // A useful map has at least two bytes per height.
             Source::File { path, .. } => path.metadata().map_or(0.0, |file| file.len() as f64 / 2.0),
         }
@@ -189,6 +209,14 @@ impl SurfaceSetup {
             Source::Waves { waves, grid, .. } => {
                 let keys = SurfaceKeys { spectrum: Some(WAVES_FILE.into()), ..self.keys.clone() };
                 Ok(LoadedSurface::of_waves(Shape::Waves(Arc::clone(waves)), *grid, keys))
+            }
+            Source::Twin { like, of_map, heights, seed, grid } => {
+                let held = self.reference.lock().unwrap_or_else(PoisonError::into_inner).take();
+                let reference = held.map_or_else(|| Reference::read(like, of_map), Ok)?;
+                let twin = reference.twin((*grid, self.cell.sides()), *seed, *heights)?;
+                let mut surface = self.of_map(like, twin, None)?;
+                surface.notes.push(like::note(like, *seed, *heights));
+                Ok(surface)
             }
             Source::Spectrum { table, amplitudes, seed, grid, .. } => {
                 let waves = table.realisation(*amplitudes, *seed)?;
@@ -228,6 +256,9 @@ impl SurfaceSetup {
         // In a result folder the map is an array in metres.
         let keys = SurfaceKeys {
             heights: Some(HEIGHTS_FILE.into()),
+            like: None,
+            heights_like: None,
+            seed: None,
             unit: None,
             height_unit: None,
             height_scale: None,

@@ -34,7 +34,7 @@ impl CheckedScene {
     /// [`CliError::Input`].
     pub fn new(surface: SurfaceKeys, contact: ContactKeys) -> Result<Self, CliError> {
         resolve::check_size_and_material(&surface, &contact)?;
-        Self::with_surface(contact, surface.heights.is_some(), || resolve::surface(surface))
+        Self::with_surface(contact, surface.heights.is_some() || surface.like.is_some(), || resolve::surface(surface))
     }
 
     /// Checks the keys for a height map that a program holds.

@@ -14,6 +14,7 @@ use crate::error::CliError;
 use crate::files::names::SCENE_FILE;
 use crate::run::threads;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene};
+use crate::scene::like;
 use crate::scene::resolve::{self, ContactSetup};
 use crate::scene::surface::{Source, SurfaceSetup};
 use crate::solve::memory_factor;
@@ -206,6 +207,10 @@ impl SweptSurface {
             Source::Waves { path, .. } => {
                 surface.spectrum = path.file_name().map(Into::into);
                 Some(FileMark::of(path)?)
+            }
+            Source::Twin { like, .. } => {
+                surface.like = like.file_name().map(Into::into);
+                Some(FileMark::of(&like::file_of(like))?)
             }
             Source::Spectrum { path, .. } => {
                 surface.psd = path.file_name().map(Into::into);

@@ -6,6 +6,7 @@ mod checks;
 mod contact;
 mod elastic_layer;
 mod layers;
+mod like;
 mod map;
 mod surface;
 

@@ -8,6 +8,7 @@ use rc_fractal::{Amplitudes, MAX_WAVES, Normalisation, SpectrumParams, Truncatio
 use rc_heights::Scales;
 
 use super::checks::{checked_grid, missing, positive};
+use super::like;
 use crate::error::CliError;
 use crate::scene::file;
 use crate::scene::heights::{self, CellOfMap};
@@ -23,13 +24,17 @@ use crate::scene::wave_file::WaveFile;
 const ELEMENTS_PER_WAVE: usize = 32;
 
 /// Seed of a realisation of a measured spectrum without a given one.
-const FIRST_SEED: u64 = 1;
+pub(super) const FIRST_SEED: u64 = 1;
 
 /// Checks the keys of the surface, with defaults from the embedded example.
 ///
 /// # Errors
 /// [`CliError::Input`].
 pub fn surface(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
+    check_companions(&keys)?;
+    if let Some(path) = keys.like.clone() {
+        return like::twin(keys, &path);
+    }
     let Some(path) = keys.heights.clone() else { return surface_in_cell(keys) };
     // Only the whole file tells the sides and the numbers of points. It is not read again.
     let map = heights::read(&path, &keys.read_params(), keys.scales())?;
@@ -51,9 +56,6 @@ pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
     let side_y = keys.cell_y.map_or(Ok(side), |side_y| positive("cell_y", "m", Some(side_y)))?;
     let cell = PeriodicCell::rectangle(side, side_y).map_err(CliError::input)?;
     let grid = keys.grid.map(checked_grid).transpose()?;
-    if keys.psd_convention.is_some() && keys.psd.is_none() {
-        return Err(CliError::input("psd_convention: applies to tables of a spectrum; give --psd FILE, or omit it"));
-    }
     match (keys.heights.clone(), keys.spectrum.clone()) {
         (Some(path), _) => {
             let source = Source::File { path, expected: grid, params: keys.read_params(), scales: keys.scales() };
@@ -65,6 +67,17 @@ pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
             None => random(keys, cell, grid),
         },
     }
+}
+
+/// Refuses keys that say how another key is meant, without it.
+fn check_companions(keys: &SurfaceKeys) -> Result<(), CliError> {
+    if keys.psd_convention.is_some() && keys.psd.is_none() {
+        return Err(CliError::input("psd_convention: applies to tables of a spectrum; give --psd FILE, or omit it"));
+    }
+    if keys.heights_like.is_some() && keys.like.is_none() {
+        return Err(CliError::input("heights_like: applies to twins; give --like FILE, or omit it"));
+    }
+    Ok(())
 }
 
 /// The setup of a random surface, on a grid that resolves its waves.
@@ -139,7 +152,7 @@ fn realisation(
 }
 
 /// Refuses a seed that cannot be written to the scene file that repeats the result.
-fn checked_seed(seed: u64) -> Result<u64, CliError> {
+pub(super) fn checked_seed(seed: u64) -> Result<u64, CliError> {
     let is_written = i64::try_from(seed).is_ok();
     let refuse = || CliError::input(format_args!("seed: must be at most {}, not {seed}", i64::MAX));
     is_written.then_some(seed).ok_or_else(refuse)
