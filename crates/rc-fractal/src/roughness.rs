@@ -89,6 +89,10 @@ impl Roughness {
     /// The field of `waves` with this roughness. Its elements have this `order` of heights before.
     pub(crate) fn applied_to(&self, waves: &Waves<'_>, order: &[usize]) -> Field {
         let mut sum = self.octaves.field(waves, None);
+        let mut places = vec![0.0; order.len()];
+        for (rank, &element) in order.iter().enumerate() {
+            places[element] = rank as f64 / order.len() as f64;
+        }
         for (octave, wanted) in self.rms.iter().enumerate() {
             let part = self.octaves.field(waves, Some(octave));
             let own = rms(&part, order, &self.bounds);
@@ -96,10 +100,10 @@ impl Roughness {
                 if *own > 0.0 { (wanted / own).clamp(1.0 / MOST, MOST) } else { 1.0 }
             };
             let factors: Vec<f64> = wanted.iter().zip(&own).map(ratio).collect();
-            let values = sum.values_mut();
-            for (rank, &element) in order.iter().enumerate() {
-                values[element] += part.values()[element] * self.factor(&factors, rank as f64 / order.len() as f64);
-            }
+            let terms = part.values().par_iter().zip(&places);
+            sum.values_mut().par_iter_mut().zip(terms).for_each(|(sum, (part, place))| {
+                *sum += part * self.factor(&factors, *place);
+            });
         }
         sum
     }

@@ -2,6 +2,7 @@
 
 mod moments;
 mod parameters;
+mod profile;
 mod sampling;
 mod spectrum;
 mod table;
