@@ -13,4 +13,5 @@ pub mod wave_file;
 
 pub mod heights;
 mod names;
+pub(crate) mod profile;
 pub mod psd_file;

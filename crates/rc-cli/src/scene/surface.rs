@@ -220,8 +220,10 @@ impl SurfaceSetup {
             }
             Source::Spectrum { table, amplitudes, seed, grid, .. } => {
                 let waves = table.realisation(*amplitudes, *seed)?;
-                let keys = SurfaceKeys { psd: Some(PSD_FILE.into()), ..self.keys.clone() };
-                Ok(LoadedSurface::of_waves(Shape::Waves(Arc::new(waves)), *grid, keys))
+                let keys = SurfaceKeys { psd: Some(PSD_FILE.into()), like: None, ..self.keys.clone() };
+                let warnings = warnings::surface::assumed(&self.assumed).into_iter().collect();
+                let surface = LoadedSurface::of_waves(Shape::Waves(Arc::new(waves)), *grid, keys);
+                Ok(LoadedSurface { warnings, ..surface })
             }
         }
     }

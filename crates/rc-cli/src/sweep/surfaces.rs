@@ -213,7 +213,8 @@ impl SweptSurface {
                 Some(FileMark::of(&like::file_of(like))?)
             }
             Source::Spectrum { path, .. } => {
-                surface.psd = path.file_name().map(Into::into);
+                let key = if surface.like.is_some() { &mut surface.like } else { &mut surface.psd };
+                *key = path.file_name().map(Into::into);
                 Some(FileMark::of(path)?)
             }
         };

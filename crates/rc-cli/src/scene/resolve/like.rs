@@ -4,20 +4,61 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 
 use rc_core::PeriodicCell;
+use rc_fractal::MAX_WAVES;
 
-use super::checks::checked_grid;
-use super::surface::{FIRST_SEED, checked_seed};
+use super::checks::{checked_grid, positive};
+use super::realisation::{FIRST_SEED, checked_seed, realisation};
 use crate::error::CliError;
 use crate::scene::keys::SurfaceKeys;
 use crate::scene::like::Reference;
+use crate::scene::profile::Profile;
+use crate::scene::psd_file::PsdFile;
 use crate::scene::surface::{Source, SurfaceSetup};
-use crate::scene::values::{GridSpec, HeightsLike};
+use crate::scene::values::{GridSpec, HeightsLike, PsdConvention};
 
-/// The setup of a twin of the map that `like` names.
+/// Elements per shortest wave of a surface from a profile, which has waves up to the limit of resolution.
+const ELEMENTS_PER_WAVE: f64 = 4.0;
+
+/// The setup of a surface like the map or the profile that `like` names.
 ///
 /// # Errors
 /// [`CliError::Input`].
-pub(super) fn twin(keys: SurfaceKeys, like: &Path) -> Result<SurfaceSetup, CliError> {
+pub(super) fn like(keys: SurfaceKeys, like: &Path) -> Result<SurfaceSetup, CliError> {
+    match Profile::read(like, &keys)? {
+        Some(profile) => of_profile(keys, like, &profile),
+        None => twin(keys, like),
+    }
+}
+
+/// The setup of an isotropic surface with the spectrum of a profile.
+fn of_profile(keys: SurfaceKeys, like: &Path, profile: &Profile) -> Result<SurfaceSetup, CliError> {
+    if keys.heights_like == Some(HeightsLike::Map) {
+        return Err(CliError::input("heights_like: a profile gives a spectrum only; omit heights_like"));
+    }
+    if keys.cell_y.is_some() {
+        return Err(CliError::input("cell_y: applies to maps; a surface from a profile has a square cell, so omit it"));
+    }
+    let side = positive("cell", "m", Some(keys.cell.unwrap_or(profile.length())))?;
+    let cell = PeriodicCell::new(side).map_err(CliError::input)?;
+    let given = keys.grid.map(checked_grid).transpose()?;
+    let rows = profile.spectrum(side, given.map_or(MAX_WAVES, |grid| grid.resolved_wavenumber()));
+    let table = PsdFile::of_rows(rows, PsdConvention::Plain, side).map_err(|cause| CliError::in_file(like, cause))?;
+    let grid = match given {
+        Some(grid) => grid,
+        None => checked_grid(GridSpec::square((ELEMENTS_PER_WAVE * table.waves() as f64) as usize))?,
+    };
+    // The folder has the table instead of the profile.
+    let keys = SurfaceKeys { cell: Some(side), unit: None, height_unit: None, height_scale: None, ..keys };
+    let keys = SurfaceKeys { heights_like: None, channel: None, layout: None, missing: None, mask: None, ..keys };
+    let mut setup = realisation(keys, (like.to_owned(), table), cell, grid)?;
+    if profile.is_assumed {
+        setup.assumed.push("metres for the profile, which names no unit; --unit says otherwise".to_owned());
+    }
+    Ok(setup)
+}
+
+/// The setup of a twin of the map that `like` names.
+fn twin(keys: SurfaceKeys, like: &Path) -> Result<SurfaceSetup, CliError> {
     if keys.amplitudes.is_some() {
         return Err(CliError::input("amplitudes: a twin has those of its map; omit amplitudes"));
     }

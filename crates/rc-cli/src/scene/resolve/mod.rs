@@ -8,6 +8,7 @@ mod elastic_layer;
 mod layers;
 mod like;
 mod map;
+mod realisation;
 mod surface;
 
 pub use checks::checked_grid;

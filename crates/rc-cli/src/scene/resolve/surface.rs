@@ -9,6 +9,7 @@ use rc_heights::Scales;
 
 use super::checks::{checked_grid, missing, positive};
 use super::like;
+use super::realisation::{checked_seed, realisation};
 use crate::error::CliError;
 use crate::scene::file;
 use crate::scene::heights::{self, CellOfMap};
@@ -23,9 +24,6 @@ use crate::scene::wave_file::WaveFile;
 /// The side of an element is then `λ_min/32`.
 const ELEMENTS_PER_WAVE: usize = 32;
 
-/// Seed of a realisation of a measured spectrum without a given one.
-pub(super) const FIRST_SEED: u64 = 1;
-
 /// Checks the keys of the surface, with defaults from the embedded example.
 ///
 /// # Errors
@@ -33,7 +31,7 @@ pub(super) const FIRST_SEED: u64 = 1;
 pub fn surface(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
     check_companions(&keys)?;
     if let Some(path) = keys.like.clone() {
-        return like::twin(keys, &path);
+        return like::like(keys, &path);
     }
     let Some(path) = keys.heights.clone() else { return surface_in_cell(keys) };
     // Only the whole file tells the sides and the numbers of points. It is not read again.
@@ -135,27 +133,6 @@ fn of_spectrum(
     let table = PsdFile::read(&path, convention, (cell.side(), keys.read_params().max_bytes))?;
     let grid = resolving_grid(grid, table.waves())?;
     realisation(keys, (path, table), cell, grid)
-}
-
-/// The setup of a realisation of the spectrum in `table`.
-fn realisation(
-    keys: SurfaceKeys,
-    (path, table): (PathBuf, PsdFile),
-    cell: PeriodicCell,
-    grid: Grid,
-) -> Result<SurfaceSetup, CliError> {
-    let seed = checked_seed(keys.seed.unwrap_or(FIRST_SEED))?;
-    let amplitudes = keys.amplitudes.unwrap_or(Amplitudes::Fixed);
-    let spec = GridSpec { nx: grid.nx(), ny: grid.ny() };
-    let keys = SurfaceKeys { grid: Some(spec), seed: Some(seed), amplitudes: Some(amplitudes), ..keys };
-    Ok(SurfaceSetup::new(cell, Source::Spectrum { path, table: Arc::new(table), amplitudes, seed, grid }, keys))
-}
-
-/// Refuses a seed that cannot be written to the scene file that repeats the result.
-pub(super) fn checked_seed(seed: u64) -> Result<u64, CliError> {
-    let is_written = i64::try_from(seed).is_ok();
-    let refuse = || CliError::input(format_args!("seed: must be at most {}, not {seed}", i64::MAX));
-    is_written.then_some(seed).ok_or_else(refuse)
 }
 
 /// The given grid, or one that resolves `waves` waves per cell well.
