@@ -6,6 +6,7 @@ mod export;
 mod guide;
 mod hardness;
 mod leakage;
+mod like;
 mod measured;
 mod over_ranks;
 mod rectangles;
