@@ -18,6 +18,8 @@ Method = Literal["adaptive", "uniform", "gauss-seidel"]
 Conductivity = Union[float, tuple[float, float], str]
 #: A file or a folder.
 Path = Union[str, "os.PathLike[str]"]
+#: Keys of files that a surface is made from.
+SURFACE_FILES = ("spectrum", "psd", "like")
 #: Units of the lengths of a file.
 LengthUnit = Literal["m", "cm", "mm", "um", "nm", "angstrom", "pm"]
 #: Values that mark missing points of a file.
@@ -50,6 +52,11 @@ def _plain(name: str, value: Any) -> Any:
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     return value
+
+
+def with_absolute_files(keys: dict[str, Any]) -> dict[str, Any]:
+    """The keys with absolute paths of the files of a surface, since the working directory may be another one later."""
+    return {name: os.path.abspath(value) if name in SURFACE_FILES else value for name, value in keys.items()}
 
 
 def length(name: str, value: Any) -> float:

@@ -12,7 +12,18 @@ from numpy.typing import NDArray
 
 from roughcontact import _core
 from roughcontact._foreign import tell
-from roughcontact._keys import Boundary, Conductivity, Grid, LengthUnit, Mask, Method, Missing, Path, plain
+from roughcontact._keys import (
+    SURFACE_FILES,
+    Boundary,
+    Conductivity,
+    Grid,
+    LengthUnit,
+    Mask,
+    Method,
+    Missing,
+    Path,
+    plain,
+)
 from roughcontact._maps import Heights, map_parts
 from roughcontact._result import Result, told
 from roughcontact._run import Bar, Interrupted, NotConvergedError, NotConvergedWarning, ProgressOption, callback, checked
@@ -32,6 +43,10 @@ def solve(
     cell: float | None = None,
     cell_y: float | None = None,
     spectrum: Path | None = None,
+    psd: Path | None = None,
+    psd_convention: Literal["plain", "fourier"] | None = None,
+    like: Path | None = None,
+    heights_like: Literal["gaussian", "map"] | None = None,
     unit: LengthUnit | None = None,
     height_unit: LengthUnit | None = None,
     height_scale: float | None = None,
@@ -91,8 +106,8 @@ def solve(
         along x and y, and the cell of other surfaces is a square.
     unit, height_unit, height_scale, channel, layout, missing, mask : optional
         How a file is read, as for :func:`read`.
-    spectrum, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, low_cut, amplitudes : optional
-        A surface of waves instead of ``heights``, as for :class:`Surface`.
+    spectrum, psd, psd_convention, like, heights_like, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, low_cut, amplitudes : optional
+        A generated surface instead of ``heights``, as for :class:`Surface`.
     grid : int, (int, int) or str, optional
         Finest elements along x and y. Default: 32 per shortest wave, or the points of a map.
     young, poisson : float, optional
@@ -257,7 +272,7 @@ def surface_of(heights: Any, keys: dict[str, Any]) -> Problem:
         return Problem({**heights.keys(), **keys})
     if isinstance(heights, (str, os.PathLike)):
         return Problem({**keys, "heights": os.fspath(heights)})
-    for name in ("unit", "height_unit", "height_scale", "channel", "layout", "missing", "mask", "spectrum"):
+    for name in ("unit", "height_unit", "height_scale", "channel", "layout", "missing", "mask", *SURFACE_FILES, "psd_convention", "heights_like"):
         if name in keys:
             raise ValueError(f"{name}: is for files; omit it, because the heights are an array (m)")
     array, sides, doubts = map_parts(heights)

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import json
-import os
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from roughcontact import _core
-from roughcontact._keys import Grid, LengthUnit, Path, plain
+from roughcontact._keys import Grid, LengthUnit, Path, plain, with_absolute_files
 
 _KEYS = (
     "cell",
+    "cell_y",
     "spectrum",
+    "psd",
+    "psd_convention",
+    "like",
+    "heights_like",
     "unit",
     "height_scale",
     "waves",
@@ -43,6 +47,18 @@ class Surface:
     spectrum : path, optional
         A file of Fourier coefficients, instead of a random surface. It has a line of kx, ky, Re and Im for each wave, and
         needs ``cell``.
+    psd : path, optional
+        A table of an isotropic spectrum, with lines of q (rad/m) and C (m⁴). It needs ``cell``. There are no waves outside
+        the table.
+    psd_convention : {"plain", "fourier"}, default "plain"
+        The mean square height is the integral of C over both components of q, or this divided by 4π².
+    like : path, optional
+        A map, or a folder with one: a twin with its spectrum, heights and roughness at each height. Or a profile, a text of
+        lines x z: an isotropic surface with its spectrum. Default of the cell and the grid: those of the map.
+    heights_like : {"map", "gaussian"}, default "map"
+        Height distribution of a twin.
+    cell_y : float, optional
+        Side of a twin along y (m).
     unit, height_scale : optional
         Unit of the coefficients, m by default, or the height (m) of the value 1 in them.
     waves : int, default 64
@@ -71,7 +87,12 @@ class Surface:
         self,
         *,
         cell: float | None = None,
+        cell_y: float | None = None,
         spectrum: Path | None = None,
+        psd: Path | None = None,
+        psd_convention: Literal["plain", "fourier"] | None = None,
+        like: Path | None = None,
+        heights_like: Literal["gaussian", "map"] | None = None,
         unit: LengthUnit | None = None,
         height_scale: float | None = None,
         waves: int | None = None,
@@ -88,9 +109,7 @@ class Surface:
     ) -> None:
         given = locals()
         self._keys = plain({name: given[name] for name in _KEYS})
-        if spectrum is not None:
-            # The working directory may be another one when it is solved.
-            self._keys["spectrum"] = os.path.abspath(os.fspath(spectrum))
+        self._keys = with_absolute_files(self._keys)
         # Refuses what is wrong now, not when it is solved.
         _core.resolved_surface(self._keys)
 
@@ -127,7 +146,12 @@ def _surface_of(keys: dict[str, Any]) -> Surface:
 def surface(
     *,
     cell: float | None = None,
+    cell_y: float | None = None,
     spectrum: Path | None = None,
+    psd: Path | None = None,
+    psd_convention: Literal["plain", "fourier"] | None = None,
+    like: Path | None = None,
+    heights_like: Literal["gaussian", "map"] | None = None,
     unit: LengthUnit | None = None,
     height_scale: float | None = None,
     waves: int | None = None,

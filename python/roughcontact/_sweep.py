@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from roughcontact import _core
 from roughcontact._foreign import tell
-from roughcontact._keys import Boundary, Conductivity, Grid, Mask, Method, Missing, Path, plain
+from roughcontact._keys import Boundary, Conductivity, Grid, Mask, Method, Missing, Path, plain, with_absolute_files
 from roughcontact._maps import Heights, equal_spacings, of_parts
 from roughcontact._result import Result
 from roughcontact._rows import FieldsAt, Found, Job, Workers, by_workers, here
@@ -47,6 +47,10 @@ def sweep(
     cell: float | None = None,
     cell_y: float | None = None,
     spectrum: Path | None = None,
+    psd: Path | None = None,
+    psd_convention: Literal["plain", "fourier"] | None = None,
+    like: Path | None = None,
+    heights_like: Literal["gaussian", "map"] | None = None,
     missing: Missing | None = None,
     mask: Mask | None = None,
     waves: int | None = None,
@@ -95,7 +99,7 @@ def sweep(
         Mean pressures (Pa) or penetrations (m), rising or falling. A range is text: ``"1e4:1e6:8"`` is geometric,
         ``"1e-6:3e-5:8:linear"`` is linear. Give exactly one of the two.
     seeds : iterable of int, or str, optional
-        A random surface for each seed: ``range(1, 8)`` or ``"1..7"``. Default: the seed of the surface.
+        A random surface, or a twin, for each seed: ``range(1, 8)`` or ``"1..7"``. Default: the seed of the surface.
     threads : int, optional
         Worker threads of each solve. Default: all cores, or one with an executor.
     time_limit : float or str, optional
@@ -238,8 +242,7 @@ class _Problem(NamedTuple):
 
 def _anywhere(heights: Any, keys: dict[str, Any], scene: Path | None, strict: bool) -> _Problem:
     """Workers may have another working directory."""
-    if "spectrum" in keys:
-        keys["spectrum"] = os.path.abspath(keys["spectrum"])
+    keys = with_absolute_files(keys)
     scene = None if scene is None else os.path.abspath(os.fspath(scene))
     if isinstance(heights, (str, os.PathLike)):
         heights = os.path.abspath(os.fspath(heights))
