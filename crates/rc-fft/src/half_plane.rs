@@ -221,7 +221,8 @@ mod tests {
     #[test]
     fn a_field_comes_back_from_its_half_plane() {
         for (nx, ny) in [(6, 5), (7, 20), (16, 12), (1, 3), (19, 1)] {
-            let field = Field::from_fn(Grid::new(nx, ny).expect("a grid"), |at| (9.0 * at.x).sin() + (at.y - 0.3).exp());
+            let field =
+                Field::from_fn(Grid::new(nx, ny).expect("a grid"), |at| (9.0 * at.x).sin() + (at.y - 0.3).exp());
             let per_element = 1.0 / field.grid().len() as f64;
             let waves = half_plane_values(&field, 0.0, |wave| wave * per_element);
             let back = field_of_half_plane(waves, field.grid());

@@ -51,7 +51,11 @@ fn density_of_profile(heights: &[f64], spacing: f64) -> Vec<[f64; 2]> {
     let mut waves: Vec<Complex64> = heights.iter().enumerate().map(|at| Complex64::new(flat(at), 0.0)).collect();
     f64::complex_forward(n).process(&mut waves);
     let last = (n - 1) / 2;
-    waves[1..=last].iter().zip(1..).map(|(wave, k)| [TAU * f64::from(k) / length, wave.norm_sqr() * length / TAU]).collect()
+    waves[1..=last]
+        .iter()
+        .zip(1..)
+        .map(|(wave, k)| [TAU * f64::from(k) / length, wave.norm_sqr() * length / TAU])
+        .collect()
 }
 
 /// Means of q and C1 over intervals of q with equal ratios of their ends.
@@ -103,7 +107,8 @@ mod tests {
     #[test]
     fn a_power_law_is_inverted_exactly() {
         // H = ½: √π Γ(1)/Γ(3/2) = 2.
-        let rows: Vec<[f64; 2]> = (0..=30).map(|i| 10_f64.powf(f64::from(i) / 10.0)).map(|q| [q, 2.0 * q.powi(-2)]).collect();
+        let rows: Vec<[f64; 2]> =
+            (0..=30).map(|i| 10_f64.powf(f64::from(i) / 10.0)).map(|q| [q, 2.0 * q.powi(-2)]).collect();
         let chords = chords_of(&rows);
         for &[q, _] in &rows {
             let error = inverted(&chords, q) * q.powi(3) - 1.0;
@@ -113,7 +118,8 @@ mod tests {
 
     #[test]
     fn a_wave_has_its_mean_square() {
-        let heights: Vec<f64> = (0..500).map(|i| 3.0 + 0.01 * f64::from(i) + (TAU * f64::from(i) / 10.0).sin()).collect();
+        let heights: Vec<f64> =
+            (0..500).map(|i| 3.0 + 0.01 * f64::from(i) + (TAU * f64::from(i) / 10.0).sin()).collect();
         let waves = density_of_profile(&heights, 0.5);
         let square: f64 = 2.0 * waves.iter().map(|wave| wave[1]).sum::<f64>() * TAU / 250.0;
         assert!((square / 0.5 - 1.0).abs() < 0.01, "mean square {square}");

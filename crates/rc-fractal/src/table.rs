@@ -48,7 +48,9 @@ pub enum TableError {
         value: f64,
     },
     /// The last wavenumber is beyond [`MAX_WAVES`].
-    #[error("the table ends at {waves} waves per cell; at most {MAX_WAVES} are possible, so end it earlier or take a smaller cell")]
+    #[error(
+        "the table ends at {waves} waves per cell; at most {MAX_WAVES} are possible, so end it earlier or take a smaller cell"
+    )]
     TooManyWaves {
         /// The last wavenumber, in waves per cell, rounded down.
         waves: f64,

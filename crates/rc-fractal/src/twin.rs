@@ -154,7 +154,8 @@ impl Powers {
     fn between(&self, [kx, ky]: [f64; 2]) -> f64 {
         let (x, y) = (kx.floor(), ky.floor());
         let (along_x, along_y) = (kx - x, ky - y);
-        let corner = |right: f64, up: f64, weight: f64| if weight > 0.0 { weight * self.at(x + right, y + up) } else { 0.0 };
+        let corner =
+            |right: f64, up: f64, weight: f64| if weight > 0.0 { weight * self.at(x + right, y + up) } else { 0.0 };
         corner(0.0, 0.0, (1.0 - along_x) * (1.0 - along_y))
             + corner(1.0, 0.0, along_x * (1.0 - along_y))
             + corner(0.0, 1.0, (1.0 - along_x) * along_y)

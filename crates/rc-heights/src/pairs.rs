@@ -93,7 +93,8 @@ mod tests {
     #[test]
     fn pairs_are_read_with_and_without_titles_and_read_back_exactly() {
         let expected = vec![[1.0, 2e-28], [3.5, 1e-29]];
-        for text in ["1,2e-28\n3.5,1e-29", "q (rad/m), C (m^4)\n1 , 2e-28\n\n3.5,1e-29\n", "# q C\n1 2e-28\n3.5\t1e-29"] {
+        for text in ["1,2e-28\n3.5,1e-29", "q (rad/m), C (m^4)\n1 , 2e-28\n\n3.5,1e-29\n", "# q C\n1 2e-28\n3.5\t1e-29"]
+        {
             assert_eq!(parse(text), Ok(expected.clone()), "{text:?}");
         }
         let dir = tempfile::tempdir().expect("a temporary folder");

@@ -119,6 +119,7 @@ impl Prepared {
     /// Solves on the threads of the caller.
     fn solve(self, observer: &dyn Observer) -> Result<Parts, CliError> {
         let Self { scene, kernel, map, budget, is_strict, started } = self;
+        let is_callers = map.is_some();
         let surface = load(&scene, map)?;
         let own = kernel.as_ref().map(|kernel| kernel as &dyn Kernel);
         let named = if own.is_none() { Some(scene.contact.kernel()?) } else { None };
@@ -131,15 +132,27 @@ impl Prepared {
         let solved = scene.solve(problem, started, observer)?;
         let SolvedParts { solution, failure, flow, warnings, wall } = solved.into_parts();
         let solution = solution.into_owned();
-        // This is all that is kept of a map, since its heights are the caller's.
+        // This is all that is kept of the caller's map.
         let height_and_slope = surface.height_and_slope(scene.contact.boundary);
         let waves = surface.wave_file().cloned();
+        let own_map = surface.map().filter(|_| !is_callers).map(|_| surface.shape.clone());
         let contact = scene.contact;
         let failure = failure.map(|failure| failure.to_string());
         let surface = surface.keys;
         let all_warnings = Vec::new();
-        let parts =
-            Parts { surface, waves, contact, solution, failure, flow, warnings, all_warnings, wall, height_and_slope };
+        let parts = Parts {
+            surface,
+            waves,
+            own_map,
+            contact,
+            solution,
+            failure,
+            flow,
+            warnings,
+            all_warnings,
+            wall,
+            height_and_slope,
+        };
         Ok(parts.with_all_warnings())
     }
 }

@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use rc_cli::error::CliError;
 use rc_cli::scene::keys::SurfaceKeys;
 use rc_cli::scene::resolve::ContactSetup;
+use rc_cli::scene::surface::Shape;
 use rc_cli::scene::wave_file::WaveFile;
 use rc_cli::solve::{MapHeights, ResultFiles, SolvedFlow};
 use rc_core::{Field, Grid};
@@ -24,6 +25,8 @@ pub(crate) struct Parts {
     pub(crate) surface: SurfaceKeys,
     /// The file of waves that was solved, if the surface is from one.
     pub(crate) waves: Option<Arc<WaveFile>>,
+    /// The map that was read or generated; `None` for the caller's heights.
+    pub(crate) own_map: Option<Shape>,
     pub(crate) contact: ContactSetup,
     pub(crate) solution: Solution<'static>,
     /// Message about a solution that did not reach the tolerance.
@@ -69,7 +72,11 @@ struct Found {
 
 impl Parts {
     fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
-        let Self { surface, waves, contact, solution, flow, warnings, .. } = self;
+        let Self { surface, waves, own_map, contact, solution, flow, warnings, .. } = self;
+        let map = map.or(match own_map {
+            Some(Shape::Map { heights, as_read }) => Some(MapHeights::InCell { heights, as_read }),
+            _ => None,
+        });
         ResultFiles { surface, map, waves: waves.as_deref(), contact, solution, flow: flow.as_ref(), warnings }
     }
 

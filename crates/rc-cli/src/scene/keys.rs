@@ -322,7 +322,8 @@ impl SurfaceKeys {
 
     /// The files that are given for the surface, with their keys. Only one of them may be given.
     pub(crate) fn files(&self) -> impl Iterator<Item = (&'static str, &Path)> {
-        let files = [("heights", &self.heights), ("spectrum", &self.spectrum), ("psd", &self.psd), ("like", &self.like)];
+        let files =
+            [("heights", &self.heights), ("spectrum", &self.spectrum), ("psd", &self.psd), ("like", &self.like)];
         files.into_iter().filter_map(|(key, path)| path.as_deref().map(|path| (key, path)))
     }
 

@@ -38,7 +38,11 @@ impl Profile {
         let spacing = (points[points.len() - 1][0] - points[0][0]) / (points.len() - 1) as f64;
         let is_equal = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0] - spacing).abs() <= EQUAL * spacing;
         if let Some(i) = points.iter().position(|point| !point[1].is_finite()) {
-            return Err(fail(format_args!("point {} of the profile is {}; heights must be finite", i + 1, points[i][1])));
+            return Err(fail(format_args!(
+                "point {} of the profile is {}; heights must be finite",
+                i + 1,
+                points[i][1]
+            )));
         }
         if !(spacing > 0.0 && points.windows(2).all(is_equal)) {
             return Err(fail(format_args!(

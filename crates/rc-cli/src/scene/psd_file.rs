@@ -23,7 +23,11 @@ impl PsdFile {
     ///
     /// # Errors
     /// [`CliError::Input`] when the file cannot be read, or is not a spectrum of this cell.
-    pub(super) fn read(path: &Path, convention: PsdConvention, (side, max_bytes): (f64, u64)) -> Result<Self, CliError> {
+    pub(super) fn read(
+        path: &Path,
+        convention: PsdConvention,
+        (side, max_bytes): (f64, u64),
+    ) -> Result<Self, CliError> {
         let rows = pairs::read_within(path, max_bytes, "q (rad/m) and C (m^4)")?;
         Self::of_rows(rows, convention, side).map_err(|cause| CliError::in_file(path, cause))
     }
@@ -34,7 +38,8 @@ impl PsdFile {
     /// What is wrong with it.
     pub(super) fn of_rows(rows: Vec<[f64; 2]>, convention: PsdConvention, side: f64) -> Result<Self, String> {
         let in_cell = |[q, c]: [f64; 2]| [q * side / TAU, c / convention.factor() / side.powi(4)];
-        let table = SpectrumTable::new(rows.iter().copied().map(in_cell).collect()).map_err(|cause| cause.to_string())?;
+        let table =
+            SpectrumTable::new(rows.iter().copied().map(in_cell).collect()).map_err(|cause| cause.to_string())?;
         Ok(Self { rows, table })
     }
 

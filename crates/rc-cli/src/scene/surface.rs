@@ -15,10 +15,10 @@ use rc_heights::{HeightMap, ReadParams, Scales};
 
 use super::as_read::AsRead;
 use super::heights::{self, CellOfMap};
-use super::like::{self, Reference};
 use super::keys::SurfaceKeys;
-use super::values::{GridSpec, HeightsLike};
+use super::like::{self, Reference};
 use super::psd_file::PsdFile;
+use super::values::{GridSpec, HeightsLike};
 use super::wave_file::{PSD_FILE, WAVES_FILE, WaveFile};
 use crate::error::CliError;
 use crate::files::names::HEIGHTS_FILE;
@@ -162,7 +162,15 @@ impl SurfaceKeys {
 impl SurfaceSetup {
     /// A surface that is not flat, about which nothing was assumed.
     pub(crate) fn new(cell: PeriodicCell, source: Source, keys: SurfaceKeys) -> Self {
-        Self { cell, source, may_be_flat: false, keys, assumed: Vec::new(), held: Arc::default(), reference: Arc::default() }
+        Self {
+            cell,
+            source,
+            may_be_flat: false,
+            keys,
+            assumed: Vec::new(),
+            held: Arc::default(),
+            reference: Arc::default(),
+        }
     }
 
     /// The setup without the map that was read for its size, for programs with many maps.

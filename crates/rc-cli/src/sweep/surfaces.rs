@@ -168,7 +168,8 @@ impl SweptSurface {
         contact: &ContactKeys,
         (control, loads): (ControlKind, &[f64]),
     ) -> Result<Self, CliError> {
-        let seed = setup.keys.seed.filter(|_| setup.keys.is_realisation() || matches!(setup.source, Source::Random { .. }));
+        let seed =
+            setup.keys.seed.filter(|_| setup.keys.is_realisation() || matches!(setup.source, Source::Random { .. }));
         let keys = with_load(control, contact, loads.first().copied());
         let contact = resolve::contact(keys, setup.cell)?;
         setup.may_be_flat = contact.boundary == Boundary::Free;

@@ -158,7 +158,10 @@ fn what_cannot_be_a_surface_is_refused_in_one_line() {
 fn the_metres_of_a_profile_without_a_unit_are_told() {
     let place = Place::new();
     let wave = |i: u32| 1e-6 * (TAU * f64::from(i) / 25.0).sin() + 1e-8 * f64::from(i * i % 7);
-    place.write("profile.txt", (0..200).map(|i| format!("{:e} {:e}\n", 1e-6 * f64::from(i), wave(i))).collect::<String>());
+    place.write(
+        "profile.txt",
+        (0..200).map(|i| format!("{:e} {:e}\n", 1e-6 * f64::from(i), wave(i))).collect::<String>(),
+    );
     assert_solved(&place.run(&["surface", "--like", "profile.txt", "--grid", "64", "--quiet", "--out", "s"]));
     let record = place.json("s/surface.json");
     assert!(codes(&record).contains(&"assumed".to_owned()), "{}", record["warnings"]);

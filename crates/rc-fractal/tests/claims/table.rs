@@ -51,7 +51,8 @@ fn a_tabulated_power_law_is_the_power_law_and_seeds_differ() {
     let table = SpectrumTable::new(rows).expect("a table");
     let params = SpectrumParams { normalisation: Normalisation::C0(3e-9), ..SpectrumParams::paper(24, 5) };
     for amplitudes in [Amplitudes::Fixed, Amplitudes::Random] {
-        let (law, of_table) = (surface(SpectrumParams { amplitudes, ..params }), Surface::from_table(&table, amplitudes, 5));
+        let (law, of_table) =
+            (surface(SpectrumParams { amplitudes, ..params }), Surface::from_table(&table, amplitudes, 5));
         let other = Surface::from_table(&table, amplitudes, 6);
         for (kx, ky) in [(0, 1), (3, -2), (24, 0), (17, 16), (-5, 20)] {
             let (a, b) = (law.amplitude(kx, ky), of_table.amplitude(kx, ky));

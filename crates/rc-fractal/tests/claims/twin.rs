@@ -37,6 +37,34 @@ fn a_twin_has_the_heights_of_its_map_exactly_and_its_spectrum_nearly() {
     assert!(differ > map.grid().len() * 9 / 10, "seeds share heights");
 }
 
+/// Summits of the map are ten times as rough as valleys, which neither its spectrum nor its heights tell.
+#[test]
+fn a_twin_is_rough_where_the_map_is() {
+    let (long, short) = (SpectrumParams::paper(6, 3), SpectrumParams { low_cut: 24.0, ..SpectrumParams::paper(40, 4) });
+    let (long, short) = (surface(long), surface(short));
+    let grid = Grid::square(192).expect("a grid");
+    let map = Field::from_fn(grid, |at| {
+        let height = long.height(at) / 1.3e-3;
+        height + 0.1 * (1.0 + 0.9 * (2.0 * height).tanh()) * short.height(at) / 1.3e-3
+    });
+    let twin = Twin::of(&map, &map, &params(&map));
+    let ratio = |field: &Field| {
+        let (heights, n) = (sorted(field), grid.nx());
+        let [valley, summit] = [0.15, 0.85].map(|part| heights[(part * grid.len() as f64) as usize]);
+        let mut sums = [[0.0; 2]; 2];
+        for (i, height) in field.values().iter().enumerate() {
+            let right = field.values()[i - i % n + (i + 1) % n];
+            let class = if *height < valley { 0 } else { 1 };
+            if *height < valley || *height > summit {
+                sums[class] = [sums[class][0] + (right - height).powi(2), sums[class][1] + 1.0];
+            }
+        }
+        (sums[1][0] / sums[1][1] / (sums[0][0] / sums[0][1])).sqrt()
+    };
+    assert!(ratio(&map) > 2.0, "the map has {}", ratio(&map));
+    assert_close("ratio of slopes on summits and in valleys", ratio(&twin.heights), ratio(&map), 0.2);
+}
+
 #[test]
 fn a_gaussian_twin_has_the_spectrum_exactly() {
     let map = map();
@@ -45,7 +73,8 @@ fn a_gaussian_twin_has_the_spectrum_exactly() {
     assert_close("mean", twin.heights.mean(), map.mean(), 1e-12);
     let third = |field: &Field| {
         let mean = field.mean();
-        let moment = |n: i32| field.values().iter().map(|h| (h - mean).powi(n)).sum::<f64>() / field.grid().len() as f64;
+        let moment =
+            |n: i32| field.values().iter().map(|h| (h - mean).powi(n)).sum::<f64>() / field.grid().len() as f64;
         moment(3) / moment(2).powf(1.5)
     };
     assert!(third(&map) > 1.0 && third(&twin.heights).abs() < 0.3, "{} and {}", third(&map), third(&twin.heights));

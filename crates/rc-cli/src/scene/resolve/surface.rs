@@ -122,7 +122,9 @@ fn of_spectrum(
     grid: Option<Grid>,
 ) -> Result<SurfaceSetup, CliError> {
     if keys.cell_y.is_some() {
-        return Err(CliError::input("cell_y: applies to height maps; a surface of waves has a square cell, so omit it"));
+        return Err(CliError::input(
+            "cell_y: applies to height maps; a surface of waves has a square cell, so omit it",
+        ));
     }
     if keys.scales() != Scales::default() || keys.reads_in_a_way() {
         return Err(CliError::input(
