@@ -81,7 +81,9 @@ pub fn field_of_half_plane(mut waves: Vec<Complex64>, grid: Grid) -> Field {
         fft.process_with_scratch(column, scratch);
         if kx > 0 && 2 * kx == nx {
             // The sum over rows counts kx and -kx, which are one wave here.
-            column.iter_mut().for_each(|wave| *wave *= 0.5);
+            for wave in column {
+                *wave *= 0.5;
+            }
         }
     });
     let mut field = Field::zeros(grid);

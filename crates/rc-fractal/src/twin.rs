@@ -100,7 +100,7 @@ impl Amplitude {
     fn of(map: &Field, params: &TwinParams) -> Self {
         let (grid, powers) = (params.grid, Powers { of: PowerSpectrum::of(map), grid: map.grid() });
         let ny = grid.ny();
-        let is_same = grid == map.grid() && params.sides == [1.0; 2];
+        let is_same = grid == map.grid() && params.sides.iter().all(|side| (side - 1.0).abs() <= f64::EPSILON);
         let [x, y] = params.sides;
         let mut values = vec![0.0; (grid.nx() / 2 + 1) * ny];
         values.par_chunks_exact_mut(ny).enumerate().for_each(|(kx, column)| {

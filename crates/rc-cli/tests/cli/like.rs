@@ -12,6 +12,11 @@ fn psd(scale: f64) -> String {
     rows.iter().fold("q,C\n".to_owned(), |text, &(waves, c)| text + &format!("{:e},{:e}\n", q(waves), scale * c))
 }
 
+/// A text of n lines.
+fn lines(n: u32, line: impl Fn(u32) -> String) -> String {
+    (0..n).map(line).collect::<Vec<_>>().concat()
+}
+
 /// A map with a heavy upper tail, on 48 x 40 points.
 fn map() -> Vec<u8> {
     let heights: Vec<f32> = bumps(48).iter().take(48 * 40).map(|height| 1e-6 * (height / 1e-5).exp()).collect();
@@ -60,8 +65,8 @@ fn a_result_is_repeated_from_its_own_folder_alone() {
     let place = Place::new();
     place.write("psd.txt", psd(1.0));
     place.write("map.npy", map());
-    let profile: String = (0..200).map(|i| format!("{i} {}\n", 1e-3 * (f64::from(i * i) * 0.37).sin())).collect();
-    place.write("profile.txt", profile);
+    let point = |i: u32| format!("{i} {}\n", 1e-3 * (f64::from(i * i) * 0.37).sin());
+    place.write("profile.txt", lines(200, point));
     let cases: [(&str, &[&str]); 3] = [
         ("psd", &["--psd", "psd.txt", "--amplitudes", "random", "--cell", "0.01", "--grid", "64"]),
         ("twin", &["--like", "map.npy", "--cell", "0.01", "--seed", "2"]),
@@ -135,7 +140,7 @@ fn what_cannot_be_a_surface_is_refused_in_one_line() {
     place.write("falling.txt", "2000 1e-18\n1000 1e-18\n");
     place.write("map.npy", map());
     place.write("short.txt", "0 1\n1 2\n");
-    place.write("uneven.txt", (0..20).map(|i| format!("{} 1e-6\n", i * i)).collect::<String>());
+    place.write("uneven.txt", lines(20, |i| format!("{} 1e-6\n", i * i)));
     let cases: [(&[&str], &str); 11] = [
         (&["--psd", "psd.txt"], "psd: a table of a spectrum needs cell (m) too"),
         (&["--psd", "psd.txt", "--cell", "0.01", "--waves", "8"], "psd defines the surface"),
@@ -158,10 +163,7 @@ fn what_cannot_be_a_surface_is_refused_in_one_line() {
 fn the_metres_of_a_profile_without_a_unit_are_told() {
     let place = Place::new();
     let wave = |i: u32| 1e-6 * (TAU * f64::from(i) / 25.0).sin() + 1e-8 * f64::from(i * i % 7);
-    place.write(
-        "profile.txt",
-        (0..200).map(|i| format!("{:e} {:e}\n", 1e-6 * f64::from(i), wave(i))).collect::<String>(),
-    );
+    place.write("profile.txt", lines(200, |i| format!("{:e} {:e}\n", 1e-6 * f64::from(i), wave(i))));
     assert_solved(&place.run(&["surface", "--like", "profile.txt", "--grid", "64", "--quiet", "--out", "s"]));
     let record = place.json("s/surface.json");
     assert!(codes(&record).contains(&"assumed".to_owned()), "{}", record["warnings"]);

@@ -18,8 +18,8 @@ fn the_mean_over_profiles_gives_the_spectrum_of_the_surface() {
         let amplitudes = Amplitudes::Random;
         let surface: Surface =
             surface(SpectrumParams { normalisation, amplitudes, roll_off: 6.0, ..SpectrumParams::paper(80, seed) });
-        let profile: Vec<f64> = (0..n).map(|i| surface.height(DVec2::new(i as f64 / n as f64, 0.3))).collect();
-        let rows = spectrum_of_profile(&profile, 1.0 / n as f64);
+        let profile: Vec<f64> = (0..n).map(|i| surface.height(DVec2::new(f64::from(i) / f64::from(n), 0.3))).collect();
+        let rows = spectrum_of_profile(&profile, 1.0 / f64::from(n));
         if mean.is_empty() {
             mean = vec![[0.0; 2]; rows.len()];
         }

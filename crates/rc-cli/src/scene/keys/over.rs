@@ -16,9 +16,7 @@ impl SurfaceKeys {
     pub fn over(mut self, mut lower: Self) -> Self {
         if self.heights.is_some() {
             lower = Self { cell: lower.cell, cell_y: lower.cell_y, ..Self::default() };
-        } else if self.spectrum.is_some() {
-            lower = Self { cell: lower.cell, ..Self::default() };
-        } else if self.psd.is_some() {
+        } else if self.spectrum.is_some() || self.psd.is_some() {
             lower = Self { cell: lower.cell, ..Self::default() };
         } else if self.like.is_some() {
             lower = Self { cell: lower.cell, cell_y: lower.cell_y, ..Self::default() };

@@ -40,4 +40,9 @@ fn a_height_map_replaces_a_random_surface_and_the_reverse() {
         assert_eq!((merged.waves, merged.heights, merged.cell), (None, None, lower.cell));
         assert_eq!(lower.clone().over(waves.clone()).spectrum, None);
     }
+    // A seed alone is another realisation of a measured spectrum, and not a self-affine surface.
+    let measured = SurfaceKeys { psd: Some("psd.csv".into()), cell: Some(2.0), seed: Some(1), ..Default::default() };
+    let seeded = SurfaceKeys { seed: Some(7), ..Default::default() }.over(measured.clone());
+    assert_eq!((seeded.psd, seeded.seed, seeded.cell), (measured.psd.clone(), Some(7), Some(2.0)));
+    assert_eq!(random.over(measured).psd, None);
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 
-use rc_core::PeriodicCell;
+use rc_core::{Grid, PeriodicCell};
 use rc_fractal::MAX_WAVES;
 
 use super::checks::{checked_grid, positive};
@@ -41,7 +41,7 @@ fn of_profile(keys: SurfaceKeys, like: &Path, profile: &Profile) -> Result<Surfa
     let side = positive("cell", "m", Some(keys.cell.unwrap_or(profile.length())))?;
     let cell = PeriodicCell::new(side).map_err(CliError::input)?;
     let given = keys.grid.map(checked_grid).transpose()?;
-    let rows = profile.spectrum(side, given.map_or(MAX_WAVES, |grid| grid.resolved_wavenumber()));
+    let rows = profile.spectrum(side, given.map_or(MAX_WAVES, Grid::resolved_wavenumber));
     let table = PsdFile::of_rows(rows, PsdConvention::Plain, side).map_err(|cause| CliError::in_file(like, cause))?;
     let grid = match given {
         Some(grid) => grid,
