@@ -44,22 +44,22 @@ pub struct SurfaceKeys {
     pub spectrum: Option<PathBuf>,
     /// Table of an isotropic spectrum: lines q C (rad/m, m⁴)
     ///
-    /// ⟨h²⟩ = ∫ C d²q. There are no waves outside the table. Phases are random (--seed).
+    /// ⟨h²⟩ = ∫ C d²q; --psd-convention says otherwise. There are no waves outside the table. Phases are random (--seed).
     #[arg(long, value_name = "FILE", help_heading = help::FILES)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub psd: Option<PathBuf>,
     /// plain: ⟨h²⟩ = ∫ C d²q; fourier: ⟨h²⟩ = ∫ C d²q/4π² [default: plain]
-    #[arg(long, value_name = "NAME", help_heading = help::FILES, hide_possible_values = true)]
+    #[arg(long, value_name = "NAME", help_heading = help::FILES, hide_possible_values = true, hide_short_help = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub psd_convention: Option<PsdConvention>,
-    /// Twin of a map (spectrum and heights), or of a profile x z (spectrum)
+    /// Random twin of a map, or of a profile: lines x z
     ///
-    /// FILE is a height map, a folder of rc surface or rc prepare with one, or a text of two columns. The twin has the
+    /// A twin of a map has its spectrum and heights, and a twin of a profile its spectrum. FILE is a height map, a folder of rc surface or rc prepare with one, or a text of two columns. The twin has the
     /// size and the grid of the map, unless --cell and --grid say otherwise. --seed gives another twin.
     #[arg(long, value_name = "FILE", help_heading = help::FILES)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub like: Option<PathBuf>,
-    /// Heights of a twin: map (those of the map) or gaussian [default: map]
+    /// Heights of a twin: those of the map, or gaussian [default: map]
     #[arg(long, value_name = "NAME", help_heading = help::FILES, hide_possible_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub heights_like: Option<HeightsLike>,

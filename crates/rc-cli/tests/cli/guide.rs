@@ -46,7 +46,7 @@ fn commands(document: &str) -> Vec<(usize, String)> {
 
 /// Makes the files that the documents assume.
 ///
-/// They are measured maps, a sphere, waves, scenes, and the file of an instrument.
+/// They are measured maps, a sphere, waves, a spectrum, a profile, scenes, and the file of an instrument.
 fn prepare(place: &Place) {
     place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
     let wide = |i: usize| (0.3 * (i % 128) as f64).sin() * 1e-6 + (0.2 * (i / 128) as f64).cos() * 1e-6;
@@ -57,6 +57,9 @@ fn prepare(place: &Place) {
     let sphere = (0..n * n).flat_map(|i| (-(x(i % n).powi(2) + x(i / n).powi(2)) / 2e-2).to_le_bytes());
     place.write("sphere.npy", npy("<f8", false, "(256, 256)", &sphere.collect::<Vec<u8>>()));
     place.write("waves.txt", "1 0 2e-7 1e-7\n0 3 -1e-7 5e-8\n4 4 3e-8 0\n");
+    place.write("psd.csv", "q,C\n6.2e3,2e-22\n2e4,2e-22\n1e5,6e-25\n");
+    let height = |i: u32| (f64::from(i) * 0.31).sin() + 0.1 * f64::from(i * i % 17);
+    place.write("profile.txt", (0..256).map(|i| format!("{i} {}\n", 0.1 * height(i))).collect::<Vec<_>>().concat());
     place.write("a.toml", "waves = 8\ngrid = 64\n");
     place.write("b.toml", "waves = 8\ngrid = 64\nhurst = 0.5\n");
     // It stands for the file of an instrument. The format follows from the first bytes.
