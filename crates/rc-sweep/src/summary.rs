@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use rc_core::Units;
 use rc_solver::{ErrorBound, Solution};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use crate::content::Cells;
@@ -102,8 +102,8 @@ pub struct Summary {
     /// Conductance of the nominal area for the given conductivities, in their unit per metre.
     ///
     /// It exists only with conductivities, and is null in full contact.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub conductance: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
+    pub conductance: Option<Option<f64>>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
     /// rms height about the mean (m).
@@ -191,6 +191,11 @@ fn tolerances(bound: ErrorBound) -> [Option<f64>; 2] {
     }
 }
 
+/// A value that is there, which may be null.
+fn as_given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<f64>>, D::Error> {
+    Option::deserialize(deserializer).map(Some)
+}
+
 /// Conductance for unit conductivity and its error (1/m). There is none in full contact.
 fn conductance(solution: &Solution<'_>, units: Units) -> [Option<f64>; 2] {
     // A conductance in 1/λ is a stiffness in E*/λ per E*.
@@ -239,7 +244,7 @@ impl Summary {
             contact_stiffness: Some(stiffness).filter(|value| value.is_finite()),
             contact_conductance: conductance,
             contact_conductance_error: error_of_conductance,
-            conductance: conductance.zip(context.conductivity).map(|(per_unit, of_bodies)| per_unit * of_bodies),
+            conductance: context.conductivity.map(|of_bodies| conductance.map(|per_unit| per_unit * of_bodies)),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,

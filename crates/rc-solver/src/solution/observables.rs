@@ -80,7 +80,9 @@ impl Observables {
         let observables = Self {
             area: bars.map_or(area, |(area, _)| area),
             rms_pressure,
-            rms_pressure_corrected: corrected(rms_pressure, &area),
+            // Pressures are at most the hardness, so ⟨p²⟩ is at most σ0 H.
+            rms_pressure_corrected: corrected(rms_pressure, &area)
+                .min((info.mean_pressure * hardness).sqrt().max(rms_pressure)),
             rms_pressure_error: rms_pressure_error(info, (&area, rest.as_ref()), [rms_pressure, max_pressure]),
             max_pressure,
             mean_gap: (info.mean_gap() + flow).max(0.0),
@@ -90,6 +92,25 @@ impl Observables {
             plastic: bars.map(|(_, plastic)| plastic),
         };
         observables.with_energy_error(info.iteration_error)
+    }
+
+    /// Adds to the error bars what follows from the relative error of the load under a given penetration.
+    ///
+    /// Contacts grow with the load as [`ContactArea::growth`] says, and ⟨p²⟩ in proportion to it. `gap` is the error of
+    /// the penetration. In full contact the stiffness is infinite, and nothing is known of the load.
+    pub(crate) fn with_load_error(self, load: f64, gap: f64) -> Self {
+        if !load.is_finite() {
+            return self;
+        }
+        let grown = load * self.area.growth();
+        let area = ContactArea { error: self.area.error.hypot(grown).min(1.0), ..self.area };
+        Self {
+            area,
+            rms_pressure_error: self.rms_pressure_error.map(|bar| bar.hypot(0.5 * load * self.rms_pressure_corrected)),
+            mean_gap_error: self.mean_gap_error.hypot(gap),
+            plastic: self.plastic.map(|plastic| PlasticContact { error: plastic.error.hypot(grown), ..plastic }),
+            ..self
+        }
     }
 
     /// Adds to the error bars the errors from the tolerance of the solve.
