@@ -65,7 +65,7 @@ impl Observables {
         [rms_pressure, max_pressure]: [f64; 2],
     ) -> Self {
         // Where the pressure leaves q = H - p to the hardness, edges of q are like other edges. p² is H² - 2 H q + q².
-        let rest = plastic.map(|edges| edges.rest);
+        let rest = plastic.map(|edges| edges.rest).filter(|rest| rest.perimeter_edges > 0);
         let of_rest = |of_area: &dyn Fn(&ContactArea) -> f64| rest.as_ref().map_or(0.0, of_area);
         // Differences of p are also those of q.
         let missing_square = area.missing_square
@@ -214,8 +214,9 @@ const GAP_OVER_AREA: f64 = 3.0;
 
 /// 95 % error of the mean gap from singular pressure at free borders.
 ///
-/// Its unit is the ratio of `Rim::at_border` to the mean pressure. The measured values are in docs/constants.md.
-const GAP_AT_BORDER: f64 = 0.4;
+/// Its unit is the ratio of `Rim::at_border` to the mean pressure. The second number is multiplied by the part of the
+/// patch in contact: errors of edges inside the patch have the other sign. The measured values are in docs/constants.md.
+const GAP_AT_BORDER: [f64; 2] = [0.4, 0.3];
 
 /// Estimated error of the mean gap. It is 0 without contact.
 fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {
@@ -228,7 +229,7 @@ fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f6
         rim.scatter_of_sharp,
         rim.hidden_gap,
         GAP_OVER_AREA * area.relative_error().min(1.0).powi(2) * info.penetration.abs(),
-        GAP_AT_BORDER * (rim.at_border + rim.at_jumps) / mean_pressure,
+        (GAP_AT_BORDER[0] + GAP_AT_BORDER[1] * area.fraction) * (rim.at_border + rim.at_jumps) / mean_pressure,
         // The overlap that the certificate has found.
         info.certificate.penetration * info.penetration_full_contact,
     ];
