@@ -192,6 +192,7 @@ fn tolerances(bound: ErrorBound) -> [Option<f64>; 2] {
 }
 
 /// A value that is there, which may be null.
+#[expect(clippy::option_option, reason = "a null is not a missing key")]
 fn as_given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<f64>>, D::Error> {
     Option::deserialize(deserializer).map(Some)
 }

@@ -32,7 +32,7 @@ impl Kind {
     /// `at` gives pressure and gap there. `side` is that of the elements along the axis.
     pub(super) fn of(at: &impl Fn(isize) -> [f64; 2], side: f64, hardness: f64) -> Self {
         let ([pressure, inside], [_, outside]) = (at(0), at(1));
-        let [next, third] = [-1, -2].map(|steps| at(steps));
+        let [next, third] = [-1, -2].map(at);
         // Fewer elements are no flat top.
         let is_wide = next[0] > 0.0 && third[0] > 0.0;
         if pressure >= hardness {
@@ -57,10 +57,9 @@ impl Kind {
     /// It is a half if it is not known.
     pub(super) fn position(self) -> f64 {
         match self {
-            Self::Jump | Self::Smooth(None) | Self::Sharp { gap: None, .. } => 0.5,
             Self::Smooth(Some(edge)) => edge.position(),
             Self::Sharp { overlap, gap: Some(gap) } if overlap + gap > 0.0 => overlap / (overlap + gap),
-            Self::Sharp { .. } => 0.5,
+            Self::Jump | Self::Smooth(None) | Self::Sharp { .. } => 0.5,
         }
     }
 }
