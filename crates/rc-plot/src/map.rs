@@ -55,12 +55,44 @@ pub enum Shade {
     },
 }
 
+/// Part of the points below, and above, the range of colours of heights.
+const BEYOND: f64 = 1e-3;
+
+/// Number of points from which the range of colours of a large field is taken.
+const SAMPLE: usize = 1 << 20;
+
 impl Shade {
+    /// The colours of heights, which `factor` converts to metres. They span 0.1 to 99.9 % of the points.
+    ///
+    /// A few spikes and pits do not take the colours of the rest.
+    #[must_use]
+    pub fn of_heights(field: &Field, factor: f64) -> Self {
+        Self::Values { range: most_of(field), palette: Palette::Viridis, factor, unit: "m" }
+    }
+
     /// Whether the map has a colour bar beside it.
     #[must_use]
     pub fn has_colour_bar(&self) -> bool {
         matches!(self, Self::Values { .. } | Self::Decades { .. })
     }
+}
+
+/// The range of the values of a field but the smallest and the largest in a thousand; the whole range of few values.
+fn most_of(field: &Field) -> (f64, f64) {
+    let n = field.values().len();
+    // Steps of the golden ratio do not follow any pattern of the map.
+    let at =
+        |i: usize| if n <= SAMPLE { i } else { ((i as f64 * 0.618_033_988_749_894_9).fract() * n as f64) as usize };
+    let sampled = (0..n.min(SAMPLE)).map(|i| field.values()[at(i)]);
+    let mut values: Vec<f64> = sampled.filter(|value| value.is_finite()).collect();
+    let beyond = (BEYOND * values.len() as f64) as usize;
+    if beyond == 0 {
+        return (field.min(), field.max());
+    }
+    let last = values.len() - 1;
+    let high = *values.select_nth_unstable_by(last - beyond, f64::total_cmp).1;
+    let low = *values.select_nth_unstable_by(beyond, f64::total_cmp).1;
+    if low < high { (low, high) } else { (field.min(), field.max()) }
 }
 
 /// Sizes, in units of the font size.
