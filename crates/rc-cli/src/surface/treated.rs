@@ -90,7 +90,10 @@ pub(crate) fn treat(read: MapRead, treatments: &[Treatment], budget: Budget) -> 
     origin.treatments.extend(after.iter().map(|effect| effect.treatment.clone()));
     effects.extend(after);
     let CellOfMap { cell, cell_y, .. } = CellOfMap::of(&path, &map, [None, None])?;
-    let expected = keys.grid.map(resolve::checked_grid).transpose()?;
+    // The scene of a folder has the grid of the map before its treatments.
+    let as_read = effects[0].grid;
+    let expected = keys.grid.filter(|grid| (grid.nx, grid.ny) != (as_read.nx(), as_read.ny()));
+    let expected = expected.map(resolve::checked_grid).transpose()?;
     let setup = resolve::surface_in_cell(SurfaceKeys { cell, cell_y, grid: None, ..keys })?;
     let mut surface = setup.of_map(&path, map, expected)?;
     let mut warnings = despiked(warnings, treatments, &surface.warnings);

@@ -27,7 +27,7 @@ pub(crate) struct TreatmentKeys {
     ///
     /// A membrane through the points around takes their place. The deviation is that of all points from the median of
     /// their eight neighbours.
-    #[arg(long, value_name = "SIGMA", num_args = 0..=1, default_missing_value = "8", allow_hyphen_values = true)]
+    #[arg(long, value_name = "SIGMA", num_args = 0..=1, default_missing_value = "8")]
     pub(crate) despike: Option<f64>,
     /// Subtract a form, fitted to measured points by least squares: mean, plane or quadratic
     #[arg(long, value_name = "FORM")]
