@@ -67,7 +67,7 @@ impl Shade {
     /// A few spikes and pits do not take the colours of the rest.
     #[must_use]
     pub fn of_heights(field: &Field, factor: f64) -> Self {
-        Self::Values { range: most_of(field), palette: Palette::Viridis, factor, unit: "m" }
+        Self::Values { range: range_of_most(field), palette: Palette::Viridis, factor, unit: "m" }
     }
 
     /// Whether the map has a colour bar beside it.
@@ -78,7 +78,10 @@ impl Shade {
 }
 
 /// The range of the values of a field but the smallest and the largest in a thousand; the whole range of few values.
-fn most_of(field: &Field) -> (f64, f64) {
+///
+/// Values that are not finite do not count.
+#[must_use]
+pub fn range_of_most(field: &Field) -> (f64, f64) {
     let n = field.values().len();
     // Steps of the golden ratio do not follow any pattern of the map.
     let at =
@@ -266,4 +269,33 @@ fn text<B: DrawingBackend>(
     let at = (at.0, at.1 + (0.14 * font) as i32);
     let style: TextStyle<'_> = (FONT, font).into_font().color(&BLACK).pos(Pos::new(anchor, VPos::Center));
     area.draw(&Text::new(text.to_owned(), at, style)).map_err(PictureError::new)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_colours_of_heights_leave_out_one_in_a_thousand_at_each_end() {
+        let grid = Grid::new(100, 50).expect("a grid");
+        let mut field = Field::new(grid, (0..5000).map(|i| f64::from((i * 7) % 5000)).collect()).expect("a field");
+        assert_eq!(range_of_most(&field), (5.0, 4994.0));
+        // Five spikes and missing points do not change the range by more than the points that they replace.
+        field.values_mut()[..5].fill(1e9);
+        field.values_mut()[10..20].fill(f64::NAN);
+        let (low, high) = range_of_most(&field);
+        assert!((0.0..=10.0).contains(&low) && (4980.0..5000.0).contains(&high), "from {low} to {high}");
+        let Shade::Values { range, factor, unit, .. } = Shade::of_heights(&field, 2.0) else { panic!("other colours") };
+        assert_eq!((range, factor, unit), ((low, high), 2.0, "m"));
+    }
+
+    #[test]
+    fn few_values_and_few_that_differ_have_all_colours() {
+        let grid = Grid::new(40, 30).expect("a grid");
+        let post = |i: usize| if i == 77 { 3.0 } else { 1.0 };
+        let field = Field::new(grid, (0..1200).map(post).collect()).expect("a field");
+        assert_eq!(range_of_most(&field), (1.0, 3.0));
+        let few = Field::new(Grid::new(2, 1).expect("a grid"), vec![-1.0, 4.0]).expect("a field");
+        assert_eq!(range_of_most(&few), (-1.0, 4.0));
+    }
 }
