@@ -3,7 +3,7 @@
 use rc_core::Field;
 
 use super::error::TreatError;
-use super::stencil::{Edges, Taps, along_x, along_y};
+use super::stencil::{Edges, Taps, about_x, along_y};
 use crate::HeightMap;
 
 /// Distance from the peak, in widths, at which the weights are cut off: exp(-π 2.5²) = 3e-9.
@@ -37,9 +37,9 @@ pub(super) fn gaussian(
         return Err(TreatError::Wavelength { filter, wavelength, least, most });
     }
     let [x, y] = spacing.map(|step| weights(wavelength / step));
-    let taps = |weights: &'_ [f64], i: usize| i as i64 - (weights.len() / 2) as i64;
-    let filtered = along_x(&map.heights, grid.nx(), edges, |i| Taps { first: taps(&x, i), weights: &x });
-    Ok(along_y(&filtered, grid.ny(), edges, |i| Taps { first: taps(&y, i), weights: &y }))
+    let filtered = about_x(&map.heights, &x, edges);
+    let first = |i: usize| i as i64 - (y.len() / 2) as i64;
+    Ok(along_y(&filtered, grid.ny(), edges, |i| Taps { first: first(i), weights: &y }))
 }
 
 /// Weights for a wavelength in points, with sum 1.
