@@ -136,10 +136,20 @@ impl Prepared {
         let waves = surface.wave_file().cloned();
         let contact = scene.contact;
         let failure = failure.map(|failure| failure.to_string());
-        let surface = surface.keys;
-        let all_warnings = Vec::new();
-        let parts =
-            Parts { surface, waves, contact, solution, failure, flow, warnings, all_warnings, wall, height_and_slope };
+        let LoadedSurface { keys: surface, origin, .. } = surface;
+        let parts = Parts {
+            surface,
+            origin,
+            waves,
+            contact,
+            solution,
+            failure,
+            flow,
+            warnings,
+            all_warnings: Vec::new(),
+            wall,
+            height_and_slope,
+        };
         Ok(parts.with_all_warnings())
     }
 }

@@ -13,7 +13,7 @@ use rc_cli::scene::wave_file::WaveFile;
 use rc_cli::solve::{MapHeights, ResultFiles, SolvedFlow};
 use rc_core::{Field, Grid};
 use rc_solver::{Solution, Status};
-use rc_sweep::{Summary, Warning};
+use rc_sweep::{MapOrigin, Summary, Warning};
 
 use crate::arrays::{self, Heights};
 use crate::errors::{bad_input, raised};
@@ -22,6 +22,8 @@ use crate::running::{Rest, on_threads, to_end};
 /// The result of a solve without borrows.
 pub(crate) struct Parts {
     pub(crate) surface: SurfaceKeys,
+    /// The file of the map, if it was read from one.
+    pub(crate) origin: Option<MapOrigin>,
     /// The file of waves that was solved, if the surface is from one.
     pub(crate) waves: Option<Arc<WaveFile>>,
     pub(crate) contact: ContactSetup,
@@ -69,8 +71,9 @@ struct Found {
 
 impl Parts {
     fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
-        let Self { surface, waves, contact, solution, flow, warnings, .. } = self;
-        ResultFiles { surface, map, waves: waves.as_deref(), contact, solution, flow: flow.as_ref(), warnings }
+        let Self { surface, waves, contact, solution, flow, warnings, origin, .. } = self;
+        let (waves, flow, origin) = (waves.as_deref(), flow.as_ref(), origin.as_ref());
+        ResultFiles { surface, map, waves, contact, solution, flow, warnings, origin }
     }
 
     pub(crate) fn with_all_warnings(mut self) -> Self {

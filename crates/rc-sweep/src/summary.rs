@@ -10,6 +10,7 @@ use serde_json::Value;
 use crate::content::Cells;
 use crate::leakage::LeakageSummary;
 use crate::memory;
+use crate::origin::MapOrigin;
 use crate::plan::ControlKind;
 use crate::warning::Warning;
 
@@ -147,6 +148,9 @@ pub struct Summary {
     /// Flow through the gap, if it was requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub leakage: Option<LeakageSummary>,
+    /// Origin of the heights, if they are from a file of a map.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<MapOrigin>,
     /// Doubts about the input and the result.
     ///
     /// Summaries of older versions have none.
@@ -262,6 +266,7 @@ impl Summary {
             iterations: info.fine_iterations(),
             operator_applications: info.fine_operator_applications(),
             leakage: None,
+            source: None,
             warnings: Vec::new(),
             wall_seconds: context.wall.as_secs_f64(),
             peak_memory_bytes: memory::peak(),
@@ -272,7 +277,7 @@ impl Summary {
 
     /// The summary as the cells of a row.
     ///
-    /// The cell `warnings` has the codes of the warnings. The cells of a flow are `permeance_x`, `permeance_y`, their
+    /// The cell `warnings` has the codes of the warnings. There is no `source`. The cells of a flow are `permeance_x`, `permeance_y`, their
     /// errors (all in m³), and `percolates` (along x and along y).
     ///
     /// # Panics
@@ -287,6 +292,7 @@ impl Summary {
             }
         }
         cells.insert("warnings".to_owned(), codes.into());
+        cells.shift_remove("source");
         if let (Some(leakage), Some(_)) = (&self.leakage, cells.shift_remove("leakage")) {
             cells.extend(leakage.cells().map(|(column, value)| (column.to_owned(), value)));
         }

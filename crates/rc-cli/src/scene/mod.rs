@@ -4,6 +4,7 @@ pub mod as_read;
 pub(crate) mod features;
 pub mod file;
 pub mod keys;
+pub(crate) mod origin;
 pub mod resolve;
 pub mod surface;
 pub mod time_limit;

@@ -16,12 +16,13 @@ use rc_heights::{HeightMap, ReadParams, Scales};
 use super::as_read::AsRead;
 use super::heights::{self, CellOfMap};
 use super::keys::SurfaceKeys;
+use super::origin;
 use super::values::GridSpec;
 use super::wave_file::{WAVES_FILE, WaveFile};
 use crate::error::CliError;
 use crate::files::names::HEIGHTS_FILE;
 use crate::warnings;
-use rc_sweep::Warning;
+use rc_sweep::{MapOrigin, Warning};
 
 /// A checked surface, before it is generated or read.
 #[derive(Clone, Debug)]
@@ -87,6 +88,8 @@ pub struct LoadedSurface {
     pub warnings: Vec<Warning>,
     /// What the reader did, one line each.
     pub notes: Vec<String>,
+    /// The file of a map that was read.
+    pub origin: Option<MapOrigin>,
     /// rms height (λ) and rms slope of a map, with periodic and with free borders, after their first use.
     of_map: [OnceLock<[f64; 2]>; 2],
 }
@@ -166,6 +169,7 @@ impl SurfaceSetup {
                 let map = held.map_or_else(|| heights::read(path, params, *scales), Ok)?;
                 let mut surface = self.of_map(path, map, *expected)?;
                 surface.warnings.extend(warnings::surface::of_record(path));
+                surface.origin = Some(origin::of(path, params.channel.as_deref()));
                 Ok(surface)
             }
             Source::Random { spectrum, grid } => {
@@ -220,7 +224,7 @@ impl SurfaceSetup {
             ..self.keys.clone()
         };
         let shape = Shape::Map { heights: Arc::new(heights), as_read };
-        Ok(LoadedSurface { shape, grid, keys, warnings, notes, of_map: Default::default() })
+        Ok(LoadedSurface { shape, grid, keys, warnings, notes, origin: None, of_map: Default::default() })
     }
 }
 
@@ -238,7 +242,7 @@ impl Shape {
 impl LoadedSurface {
     /// A surface of waves.
     fn of_waves(shape: Shape, grid: Grid, keys: SurfaceKeys) -> Self {
-        Self { shape, grid, keys, warnings: Vec::new(), notes: Vec::new(), of_map: Default::default() }
+        Self { shape, grid, keys, warnings: Vec::new(), notes: Vec::new(), origin: None, of_map: Default::default() }
     }
 
     /// Heights on the finest grid, in λ.

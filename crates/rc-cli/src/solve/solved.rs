@@ -261,8 +261,8 @@ impl<'a> Solved<'a> {
         let ProblemSetup { surface, contact, .. } = self.problem;
         let map = surface.map().map(|(heights, as_read)| MapHeights::InCell { heights, as_read });
         let waves = surface.wave_file().map(AsRef::as_ref);
-        let (flow, warnings) = (self.flow.as_ref(), &self.warnings[..]);
-        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution, flow, warnings }
+        let (flow, warnings, origin) = (self.flow.as_ref(), &self.warnings[..], surface.origin.as_ref());
+        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution, flow, warnings, origin }
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rc_core::Field;
 use rc_heights::{gsf, netcdf, npy, spectrum, text};
-use rc_plot::{Map, MapPicture, Palette, Shade, save_png};
+use rc_plot::{Map, MapPicture, Shade, save_png};
 use rc_sweep::files::{self, FileError, Staged};
 use rc_sweep::to_json;
 
@@ -67,17 +67,17 @@ pub(super) fn write_map(target: &Path, surface: &LoadedSurface, heights: &Field,
     })
 }
 
-/// Writes the folder of a surface, which `rc solve` can solve.
+/// The files of the folder of a surface, which `rc solve` can solve.
 ///
 /// # Errors
 /// [`FileError::Write`].
-pub(super) fn write_folder(
+pub(crate) fn stage_folder(
     folder: &Path,
     surface: &LoadedSurface,
     heights: &Field,
     record: &SurfaceRecord,
     side: f64,
-) -> Result<(), FileError> {
+) -> Result<Staged, FileError> {
     let (field, factor) = in_metres(surface, heights, side);
     // A generated surface has a default material, the others have none.
     let material = if surface.keys.heights.is_some() || surface.keys.spectrum.is_some() { "--e-star ... " } else { "" };
@@ -85,8 +85,7 @@ pub(super) fn write_folder(
         "# The surface; `rc solve scene.toml {material}--pressure ...` presses it.\n\n{}",
         file::to_toml(&surface.keys)
     );
-    let range = (heights.min(), heights.max());
-    let shade = Shade::Values { range, palette: Palette::Viridis, factor: side, unit: "m" };
+    let shade = Shade::of_heights(heights, side);
     let picture = MapPicture(Map { title: "Height", field: heights, shade, side });
     let mut staged = Staged::new(folder)?;
     staged.add(HEIGHTS_FILE, |path| npy::write(path, &field, factor))?;
@@ -96,5 +95,5 @@ pub(super) fn write_folder(
     staged.add("surface.png", |path| save_png(&picture, path))?;
     staged.add_text(SCENE_FILE, &scene)?;
     staged.add_text(RECORD_FILE, &to_json(record))?;
-    staged.commit()
+    Ok(staged)
 }

@@ -8,7 +8,7 @@ use rc_heights::{BorderStep, HeightMap};
 use rc_sweep::Warning;
 use rc_sweep::WarningCode::{Assumed, Border, Columns, Counter as CounterCode, Marks, Missing, Slope, Spikes, Units};
 
-use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SUMMARY_FILE};
+use crate::files::beside;
 
 /// rms slope above which a surface is hardly a rough one.
 ///
@@ -113,7 +113,7 @@ pub(crate) fn of_map(map: &HeightMap) -> Vec<Warning> {
     if let Some(spikes) = spikes {
         let text = format!(
             "{} {} far from all neighbours, by up to {}; if measured wrongly, they carry a light load alone, so remove them \
-             before",
+             before (rc surface --despike)",
             count(spikes.count, "point"),
             if spikes.count == 1 { "stands" } else { "stand" },
             engineering(spikes.largest, "m")
@@ -150,13 +150,7 @@ pub(crate) fn of_record(path: &Path) -> Option<Warning> {
     struct Record {
         warnings: Vec<Warning>,
     }
-    let folder = path.parent().filter(|_| path.file_name().is_some_and(|name| name == HEIGHTS_FILE))?;
-    let of_file = |name: &str| {
-        let text = std::fs::read_to_string(folder.join(name)).ok()?;
-        let Record { warnings } = serde_json::from_str(&text).ok()?;
-        warnings.into_iter().find(|warning| warning.code == Missing)
-    };
-    [RECORD_FILE, SUMMARY_FILE].into_iter().find_map(of_file)
+    beside::records(path).find_map(|Record { warnings }| warnings.into_iter().find(|warning| warning.code == Missing))
 }
 
 /// A doubt about a map that is solved as if it repeated itself.

@@ -282,7 +282,7 @@ fn remedies_are_possible() {
     let cases: &[(&[&str], &str)] = &[
         (&["man"], "required argument is missing: --out <DIR>"),
         (&["sweep", "merge"], "required arguments are missing: --out <DIR>, <DIR>..."),
-        (&["prepare"], "unrecognized subcommand 'prepare'; rc --help lists the commands"),
+        (&["squeeze"], "unrecognized subcommand 'squeeze'; rc --help lists the commands"),
         (&["surface", "--method", "uniform"], "unexpected argument '--method' found; --help lists the flags"),
         (&["solve", "--pressure", "1e5", "--grid", "64x"], "512x256, not '64x'"),
         (

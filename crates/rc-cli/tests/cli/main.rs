@@ -8,6 +8,7 @@ mod hardness;
 mod leakage;
 mod measured;
 mod over_ranks;
+mod prepare;
 mod rectangles;
 mod report;
 mod robustness;
