@@ -72,6 +72,9 @@ pub struct PlannedSurface {
     pub loads: Vec<f64>,
     /// The height map, if the surface is one. Its content determines the rows, but its path does not.
     pub map: Option<FileMark>,
+    /// The height map of the other body, if it is added.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub added: Option<FileMark>,
 }
 
 /// Length and checksum, which identify a file.

@@ -3,6 +3,7 @@
 pub mod as_read;
 pub(crate) mod features;
 pub mod file;
+pub mod form;
 pub mod keys;
 pub mod resolve;
 pub mod surface;
@@ -12,3 +13,5 @@ pub mod wave_file;
 
 pub mod heights;
 mod names;
+mod other_body;
+mod quantity;

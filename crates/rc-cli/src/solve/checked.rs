@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use rc_core::{Boundary, Kernel, Observer};
+use rc_core::{Kernel, Observer};
 use rc_solver::Feature;
 use rc_sweep::memory::Budget;
 
@@ -66,9 +66,9 @@ impl CheckedScene {
         } else {
             contact
         };
-        let mut surface = surface()?;
+        let surface = surface()?;
         let contact = ContactSetup { grid_is_chosen: area_error.is_some(), ..resolve::contact(contact, surface.cell)? };
-        surface.may_be_flat = contact.boundary == Boundary::Free;
+        let surface = surface.bounded(contact.boundary)?;
         Ok(Self { surface, contact, area_error })
     }
 

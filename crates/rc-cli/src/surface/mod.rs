@@ -65,10 +65,14 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
 /// Writes and prints the surface.
 fn write(Prepared { surface, side, effects, warnings, notes }: &Prepared, run: &RunKeys) -> Result<(), CliError> {
     let heights = surface.heights()?;
-    let mut record = SurfaceRecord::of(&heights, *side, surface.moments());
+    let mut record = SurfaceRecord::of(&heights, *side, surface.moments(&heights));
     record.treatments = effects.iter().map(TreatmentRow::from).collect();
     record.notes.clone_from(notes);
-    record.warnings = [&warnings[..], &record.shape().warnings()].concat();
+    record.warnings.clone_from(warnings);
+    // Range and slope of what a shape is added to are doubted already.
+    if surface.form.is_none() {
+        record.warnings.extend(record.shape().warnings());
+    }
     refuse(&record.warnings, run.strict, "; nothing was written")?;
     tell(&record.warnings, run);
     let target = run.out.as_deref();

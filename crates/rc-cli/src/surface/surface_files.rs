@@ -80,7 +80,7 @@ pub(super) fn write_folder(
 ) -> Result<(), FileError> {
     let (field, factor) = in_metres(surface, heights, side);
     // A generated surface has a default material, the others have none.
-    let material = if surface.keys.heights.is_some() || surface.keys.spectrum.is_some() { "--e-star ... " } else { "" };
+    let material = if surface.keys.file().is_some() || surface.keys.is_shape() { "--e-star ... " } else { "" };
     let scene = format!(
         "# The surface; `rc solve scene.toml {material}--pressure ...` presses it.\n\n{}",
         file::to_toml(&surface.keys)

@@ -4,7 +4,6 @@
 
 use std::path::{Path, PathBuf};
 
-use rc_core::Boundary;
 use rc_sweep::{ControlKind, FileMark, Loads, MAX_ROWS, PlannedSurface, Seeds, SweepPlan, SweepRow};
 use serde_json::json;
 
@@ -62,7 +61,7 @@ impl Surfaces {
         let mut surfaces = Vec::new();
         for (name, scene) in &scenes {
             let loads = loads(args, control, &scene.contact)?;
-            check_rows(scenes.len(), args.seeds.as_ref(), loads.len())?;
+            check_rows(scenes.len(), args.seeds.as_ref(), loads.len().max(1))?;
             // One scene alone needs no name.
             let in_scene = |error| match error {
                 CliError::Input(message) if scenes.len() > 1 => CliError::Input(format!("scene {name}: {message}")),
@@ -162,17 +161,21 @@ impl SweptSurface {
     }
 
     fn on(
-        mut setup: SurfaceSetup,
+        setup: SurfaceSetup,
         name: &str,
         contact: &ContactKeys,
         (control, loads): (ControlKind, &[f64]),
     ) -> Result<Self, CliError> {
         let seed = setup.keys.seed.filter(|_| matches!(setup.source, Source::Random { .. }));
+        let loads = match contact.force {
+            Some(force) if loads.is_empty() => vec![resolve::mean_pressure(force, setup.cell)?],
+            _ => loads.to_vec(),
+        };
         let keys = with_load(control, contact, loads.first().copied());
         let contact = resolve::contact(keys, setup.cell)?;
-        setup.may_be_flat = contact.boundary == Boundary::Free;
+        let setup = setup.bounded(contact.boundary)?;
         let contact = with_load(control, &contact.keys, None);
-        Ok(Self { scene: name.to_owned(), seed, setup, contact, loads: loads.to_vec(), held: None })
+        Ok(Self { scene: name.to_owned(), seed, setup, contact, loads, held: None })
     }
 
     /// The contact under `load`, ready to be solved.
@@ -198,13 +201,20 @@ impl SweptSurface {
     pub(super) fn planned(&self) -> Result<PlannedSurface, CliError> {
         let mut surface = self.setup.keys.clone();
         let map = match &self.setup.source {
-            Source::Random { .. } => None,
+            Source::Random { .. } | Source::Shape { .. } => None,
             Source::File { path, .. } => {
                 surface.heights = path.file_name().map(Into::into);
                 Some(self.held.map_or_else(|| FileMark::of(path), Ok)?)
             }
             Source::Waves { path, .. } => {
                 surface.spectrum = path.file_name().map(Into::into);
+                Some(FileMark::of(path)?)
+            }
+        };
+        let added = match &self.setup.keys.add {
+            None => None,
+            Some(path) => {
+                surface.add = path.file_name().map(Into::into);
                 Some(FileMark::of(path)?)
             }
         };
@@ -215,6 +225,7 @@ impl SweptSurface {
             contact: json!(self.contact),
             loads: self.loads.clone(),
             map,
+            added,
         })
     }
 }
@@ -225,7 +236,7 @@ fn with_load(control: ControlKind, keys: &ContactKeys, value: Option<f64>) -> Co
         ControlKind::Pressure => (value, None),
         ControlKind::Penetration => (None, value),
     };
-    ContactKeys { pressure, penetration, ..keys.clone() }
+    ContactKeys { pressure, penetration, force: None, ..keys.clone() }
 }
 
 /// Refuses an unreasonable number of rows.
@@ -247,6 +258,7 @@ fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
         ("--penetrations", args.penetrations.is_some()),
         ("--pressure", contact.pressure.is_some()),
         ("--penetration", contact.penetration.is_some()),
+        ("--force", contact.force.is_some()),
     ];
     let given: Vec<&str> = given.iter().filter(|(_, given)| *given).map(|(flag, _)| *flag).collect();
     if let [first, second, ..] = given[..] {
@@ -295,9 +307,9 @@ fn control(args: &SweepArgs, scenes: &[(String, Scene)]) -> Result<ControlKind, 
     if args.penetrations.is_some() {
         return Ok(ControlKind::Penetration);
     }
-    let of_scene = |scene: &Scene| match (scene.contact.pressure, scene.contact.penetration) {
-        (Some(_), None) => Some(ControlKind::Pressure),
-        (None, Some(_)) => Some(ControlKind::Penetration),
+    let of_scene = |Scene { contact, .. }: &Scene| match (contact.n_loads(), contact.penetration) {
+        (1, None) => Some(ControlKind::Pressure),
+        (1, Some(_)) => Some(ControlKind::Penetration),
         _ => None,
     };
     let mut found = None;
@@ -321,15 +333,18 @@ fn control(args: &SweepArgs, scenes: &[(String, Scene)]) -> Result<ControlKind, 
 }
 
 /// The loads of a scene: those of the command line, or its own.
+///
+/// There are none for a force, whose mean pressure depends on the cell.
 fn loads(args: &SweepArgs, control: ControlKind, keys: &ContactKeys) -> Result<Vec<f64>, CliError> {
     let (list, own) = match control {
         ControlKind::Pressure => (&args.pressures, keys.pressure),
         ControlKind::Penetration => (&args.penetrations, keys.penetration),
     };
-    match (list, own) {
-        (Some(Loads(values)), _) => Ok(values.clone()),
-        (None, Some(value)) => Ok(vec![value]),
-        (None, None) => Err(CliError::input(format_args!("{}: must be given", control.key()))),
+    match (list, own, keys.force) {
+        (Some(Loads(values)), ..) => Ok(values.clone()),
+        (None, Some(value), _) => Ok(vec![value]),
+        (None, None, Some(_)) => Ok(Vec::new()),
+        (None, None, None) => Err(CliError::input(format_args!("{}: must be given", control.key()))),
     }
 }
 
