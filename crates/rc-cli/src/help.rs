@@ -8,11 +8,10 @@ pub(crate) const ACCURACY: &str = "Accuracy";
 pub(crate) const RESULTS: &str = "Results";
 pub(crate) const FILES: &str = "Surface from a file";
 pub(crate) const RANDOM: &str = "Random surface";
-pub(crate) const SHAPE: &str = "Shape and other body";
 pub(crate) const PHYSICS: &str = "Physics beyond the elastic half-space";
 pub(crate) const MACHINE: &str = "Method and machine";
 
-const ORDER: [&str; 9] = [SURFACE, CONTACT, ACCURACY, RESULTS, FILES, RANDOM, SHAPE, PHYSICS, MACHINE];
+const ORDER: [&str; 8] = [SURFACE, CONTACT, ACCURACY, RESULTS, FILES, RANDOM, PHYSICS, MACHINE];
 
 /// `-h` and `--help` print the same short page; manual pages have the long texts.
 pub(crate) fn help_flag() -> Arg {

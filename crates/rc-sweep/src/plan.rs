@@ -59,6 +59,11 @@ impl From<Control> for ControlKind {
 pub struct PlannedSurface {
     /// Name of the scene of the surface. It is empty if there is only one scene.
     pub scene: String,
+    /// Values of the settings that the sweep varies, by their names.
+    ///
+    /// Each row has them as columns.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub varied: Vec<(String, Value)>,
     /// Seed of a random surface.
     #[serde(skip)]
     pub seed: Option<u64>,
@@ -174,12 +179,12 @@ impl SweepPlan {
     /// Distributes the rows to shards by their expected processor time in seconds.
     ///
     /// The longest row comes first, and each row goes to the shard with the lowest total. `seconds` is called for the
-    /// loads of the first surface of each scene, and applies to all surfaces of the scene. Where it returns `None`, the
-    /// mean is used.
+    /// loads of the first surface of each scene with the same varied settings, and applies to all these surfaces. Where
+    /// it returns `None`, the mean is used.
     #[must_use]
     pub fn dealt_by(mut self, mut seconds: impl FnMut(&SweepRow) -> Option<f64>) -> Self {
         let (mut scenes, mut first) = (Vec::new(), 0);
-        for surfaces in self.surfaces.chunk_by(|a, b| a.scene == b.scene) {
+        for surfaces in self.surfaces.chunk_by(|a, b| a.scene == b.scene && a.varied == b.varied) {
             let loads = surfaces.first().map_or(&[][..], |surface| &surface.loads);
             let row = |(i, &load)| SweepRow { index: first * loads.len() + i, surface: first, load };
             scenes.push((surfaces.len(), loads.iter().enumerate().map(|row_at| seconds(&row(row_at))).collect()));
@@ -218,7 +223,7 @@ impl SweepPlan {
         SweepRow { index, surface, load: self.surfaces[surface].loads[index % loads] }
     }
 
-    /// Name of a row in a message: `row 3 (seed 1, pressure 1e5)`.
+    /// Name of a row in a message: `row 3 (hardness 5e6, seed 1, pressure 1e5)`.
     ///
     /// It counts from 1, as in the table.
     ///
@@ -226,11 +231,13 @@ impl SweepPlan {
     /// When there is no such row.
     #[must_use]
     pub fn describe(&self, row: &SweepRow) -> String {
-        let seed = self.surfaces[row.surface].seed.map_or_else(String::new, |seed| format!("seed {seed}, "));
-        format!("row {} ({seed}{} {:e})", row.index + 1, self.control.key(), row.load)
+        let PlannedSurface { varied, seed, .. } = &self.surfaces[row.surface];
+        let varied: String = varied.iter().map(|(key, value)| format!("{key} {value}, ")).collect();
+        let seed = seed.map_or_else(String::new, |seed| format!("seed {seed}, "));
+        format!("row {} ({varied}{seed}{} {:e})", row.index + 1, self.control.key(), row.load)
     }
 
-    /// The first columns of a row: scene if there are several, seed, load.
+    /// The first columns of a row: scene if there are several, seed, load, varied settings.
     pub(crate) fn leading_cells(&self, row: &SweepRow) -> Cells {
         let surface = &self.surfaces[row.surface];
         let mut cells = Map::new();
@@ -239,6 +246,7 @@ impl SweepPlan {
         }
         cells.insert("seed".into(), json!(surface.seed));
         cells.insert("control_value".into(), json!(row.load));
+        cells.extend(surface.varied.iter().cloned());
         cells
     }
 

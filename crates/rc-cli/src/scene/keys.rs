@@ -107,32 +107,33 @@ pub struct SurfaceKeys {
     /// fixed: those of the spectrum (Eq. 14); random: Gaussian [default: fixed]
     #[arg(long, value_name = "NAME", help_heading = help::RANDOM, value_parser = amplitudes(), hide_possible_values = true)]
     pub amplitudes: Option<Amplitudes>,
-    /// A shape at the centre, alone or added: sphere, cylinder, cone, wave or flat
+    /// Alone or added: sphere, cylinder (--radius), cone (--angle), flat, wave (--wavelength, --wave-amplitude)
     ///
-    /// The sphere is the paraboloid -r²/2R, the cylinder -x²/2R. A wave is along x.
-    #[arg(long, value_name = "NAME", help_heading = help::SHAPE, hide_possible_values = true)]
+    /// The highest point is at the centre of the cell. The sphere is the paraboloid -r²/2R, the cylinder -x²/2R with
+    /// its axis along y. A wave is along x.
+    #[arg(long, value_name = "NAME", hide_possible_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shape: Option<FormName>,
     /// Radius R of the sphere or cylinder (m)
-    #[arg(long, value_name = "M", help_heading = help::SHAPE, value_parser = length::parse, allow_hyphen_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
     /// Angle of the cone's flank to the plane (degrees)
-    #[arg(long, value_name = "DEG", help_heading = help::SHAPE, value_parser = angle::parse, allow_hyphen_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "DEG", value_parser = angle::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "angle::read", skip_serializing_if = "Option::is_none")]
     pub angle: Option<f64>,
     /// Wavelength of the wave (m)
-    #[arg(long, value_name = "M", help_heading = help::SHAPE, value_parser = length::parse, allow_hyphen_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
     pub wavelength: Option<f64>,
     /// Amplitude of the wave (m), half of its range
-    #[arg(long, value_name = "M", help_heading = help::SHAPE, value_parser = length::parse, allow_hyphen_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
     pub wave_amplitude: Option<f64>,
-    /// Height map of the other body, which is mirrored along x and added
+    /// Height map of the other body, mirrored along x and added
     ///
     /// Both maps are positive towards the other body, and have the same grid and cell. The flags for files are for both.
-    #[arg(long, value_name = "FILE", help_heading = help::SHAPE)]
+    #[arg(long, value_name = "FILE")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub add: Option<PathBuf>,
     /// Elements per side, 512 or 512x256 [default: the map's; 32 per shortest wave]
@@ -161,14 +162,14 @@ pub struct ContactKeys {
     #[arg(long, value_name = "PA", value_parser = pressure::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "pressure::read")]
     pub e_star: Option<f64>,
-    /// Young's modulus of the other body (Pa) [default: it is rigid]
+    /// Young's modulus of the other body (Pa), with --poisson2 [default: rigid]
     ///
     /// 1/E* is the sum of (1-ν²)/E of both bodies.
     #[arg(long, value_name = "PA", help_heading = help::PHYSICS, value_parser = pressure::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "pressure::read", skip_serializing_if = "Option::is_none")]
     pub young2: Option<f64>,
     /// Poisson's ratio of the other body
-    #[arg(long, value_name = "NU", help_heading = help::PHYSICS, allow_hyphen_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "NU", help_heading = help::PHYSICS, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub poisson2: Option<f64>,
     /// Mean pressure σ0 (Pa)
@@ -189,7 +190,7 @@ pub struct ContactKeys {
     #[arg(long, value_name = "PA", help_heading = help::PHYSICS, value_parser = pressure::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "pressure::read", skip_serializing_if = "Option::is_none")]
     pub hardness: Option<f64>,
-    /// Conductivities of both bodies, such as 400,50: adds the conductance of the contact
+    /// Conductivities of both bodies, such as 400,50: adds the conductance
     ///
     /// Electrical (S/m) or thermal (W/(m K)). One value stands for both bodies.
     #[arg(long, value_name = "K1[,K2]", help_heading = help::PHYSICS, allow_hyphen_values = true)]

@@ -14,4 +14,4 @@ pub mod wave_file;
 pub mod heights;
 mod names;
 mod other_body;
-mod quantity;
+pub(crate) mod quantity;

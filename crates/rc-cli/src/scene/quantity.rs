@@ -3,6 +3,7 @@
 use std::fmt;
 
 use rc_core::Dimension;
+use rc_sweep::Loads;
 use serde::de::{Deserializer, Error, Visitor};
 
 /// The readers of keys of one dimension, for clap and for serde.
@@ -29,6 +30,16 @@ readers!(length, Dimension::Length);
 readers!(pressure, Dimension::Pressure);
 readers!(force, Dimension::Force);
 readers!(angle, Dimension::Angle);
+
+/// Reads mean pressures of the command line.
+pub(crate) fn pressures(text: &str) -> Result<Loads, String> {
+    Loads::with_units(text, Dimension::Pressure)
+}
+
+/// Reads penetrations of the command line.
+pub(crate) fn penetrations(text: &str) -> Result<Loads, String> {
+    Loads::with_units(text, Dimension::Length)
+}
 
 fn read<'de, D: Deserializer<'de>>(dimension: Dimension, deserializer: D) -> Result<f64, D::Error> {
     deserializer.deserialize_any(NumberWithUnit(dimension))

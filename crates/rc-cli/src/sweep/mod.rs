@@ -17,10 +17,12 @@ mod results;
 mod rows;
 mod specs;
 mod surfaces;
+mod varied;
 
 pub use map_mark::MapMark;
 pub(crate) use mean::MEAN_FILE;
 pub use planned::{SweepLists, plan};
+pub use varied::Variation;
 
 use std::sync::Arc;
 use std::time::Instant;

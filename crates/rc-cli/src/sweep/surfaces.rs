@@ -9,6 +9,7 @@ use serde_json::json;
 
 use super::args::SweepArgs;
 use super::map_mark::MapMark;
+use super::varied::Varied;
 use crate::error::CliError;
 use crate::files::names::SCENE_FILE;
 use crate::run::threads;
@@ -22,6 +23,8 @@ use crate::solve::memory_factor;
 pub(super) struct SweptSurface {
     /// Name of the scene, which is its file's name without folder and extension.
     scene: String,
+    /// Values of the keys that are varied.
+    varied: Varied,
     /// Seed; `None` for a surface from a file.
     seed: Option<u64>,
     pub(super) setup: SurfaceSetup,
@@ -57,21 +60,24 @@ impl Surfaces {
         let run = scenes.first().map(|(_, scene)| scene.run.clone()).unwrap_or_default();
         // Files of waves are read with these threads.
         let threads = threads::start(run.threads)?;
+        let n_scenes = scenes.len();
+        let scenes = varied(args, scenes)?;
         let control = control(args, &scenes)?;
         let mut surfaces = Vec::new();
-        for (name, scene) in &scenes {
+        for (name, values, scene) in &scenes {
             let loads = loads(args, control, &scene.contact)?;
             check_rows(scenes.len(), args.seeds.as_ref(), loads.len().max(1))?;
             // One scene alone needs no name.
             let in_scene = |error| match error {
-                CliError::Input(message) if scenes.len() > 1 => CliError::Input(format!("scene {name}: {message}")),
+                CliError::Input(message) if n_scenes > 1 => CliError::Input(format!("scene {name}: {message}")),
                 other => other,
             };
             for keys in seeded(args.seeds.as_ref(), name, scene)? {
-                surfaces.push(SweptSurface::new(name, keys, control, &loads).map_err(in_scene)?);
+                let surface = SweptSurface::new(name, keys, control, &loads).map_err(in_scene)?;
+                surfaces.push(SweptSurface { varied: values.clone(), ..surface });
             }
         }
-        Ok(Self { control, all: surfaces, n_scenes: scenes.len(), keeps_fields: args.fields, run, threads })
+        Ok(Self { control, all: surfaces, n_scenes, keeps_fields: args.fields, run, threads })
     }
 
     /// The plan of the sweep.
@@ -175,7 +181,7 @@ impl SweptSurface {
         let contact = resolve::contact(keys, setup.cell)?;
         let setup = setup.bounded(contact.boundary)?;
         let contact = with_load(control, &contact.keys, None);
-        Ok(Self { scene: name.to_owned(), seed, setup, contact, loads, held: None })
+        Ok(Self { scene: name.to_owned(), varied: Varied::new(), seed, setup, contact, loads, held: None })
     }
 
     /// The contact under `load`, ready to be solved.
@@ -220,6 +226,7 @@ impl SweptSurface {
         };
         Ok(PlannedSurface {
             scene: self.scene.clone(),
+            varied: self.varied.clone(),
             seed: self.seed,
             surface: json!(surface),
             contact: json!(self.contact),
@@ -288,6 +295,16 @@ fn scenes(args: &SweepArgs) -> Result<Vec<(String, Scene)>, CliError> {
     Ok(scenes)
 }
 
+/// The scenes with their names, in all variations.
+fn varied(args: &SweepArgs, scenes: Vec<(String, Scene)>) -> Result<Vec<(String, Varied, Scene)>, CliError> {
+    let mut all = Vec::new();
+    for (name, scene) in scenes {
+        let varied = super::varied::scenes(&args.vary, &scene)?;
+        all.extend(varied.into_iter().map(|(values, scene)| (name.clone(), values, scene)));
+    }
+    Ok(all)
+}
+
 /// The name of a scene: its file's name, or that of the folder for a folder or its `scene.toml`.
 fn name_of(path: &Path) -> String {
     let is_of_folder = path.file_name().is_some_and(|name| name == SCENE_FILE);
@@ -300,7 +317,7 @@ fn name_of(path: &Path) -> String {
 }
 
 /// The quantity of the loads, which is the same for all scenes.
-fn control(args: &SweepArgs, scenes: &[(String, Scene)]) -> Result<ControlKind, CliError> {
+fn control(args: &SweepArgs, scenes: &[(String, Varied, Scene)]) -> Result<ControlKind, CliError> {
     if args.pressures.is_some() {
         return Ok(ControlKind::Pressure);
     }
@@ -313,7 +330,7 @@ fn control(args: &SweepArgs, scenes: &[(String, Scene)]) -> Result<ControlKind, 
         _ => None,
     };
     let mut found = None;
-    for (name, scene) in scenes {
+    for (name, _, scene) in scenes {
         match (of_scene(scene), found) {
             (None, _) => {
                 let message = "the loads are missing: give --pressures or --penetrations, for example 1e4:1e6:8";

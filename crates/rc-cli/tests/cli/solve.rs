@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::support::{MATERIAL, Place, assert_refused, assert_solved, bumps, f8, map, npy, small, text};
 
 /// Keys of `summary.json`, in their order.
-pub(crate) const KEYS: [&str; 46] = [
+pub(crate) const KEYS: [&str; 47] = [
     "status",
     "control",
     "kernel",
