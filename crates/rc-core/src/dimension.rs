@@ -27,7 +27,8 @@ enum Size {
 }
 
 /// Units that have decimal prefixes.
-const PREFIXED: [(&str, Dimension); 3] = [("m", Dimension::Length), ("Pa", Dimension::Pressure), ("N", Dimension::Force)];
+const PREFIXED: [(&str, Dimension); 3] =
+    [("m", Dimension::Length), ("Pa", Dimension::Pressure), ("N", Dimension::Force)];
 
 const PREFIXES: [(&str, i32); 10] =
     [("", 0), ("T", 12), ("G", 9), ("M", 6), ("k", 3), ("m", -3), ("u", -6), ("µ", -6), ("\u{3bc}", -6), ("n", -9)];
@@ -157,7 +158,11 @@ mod tests {
     #[test]
     fn another_dimension_or_an_unknown_unit_is_named() {
         for (dimension, text, expected) in [
-            (Dimension::Pressure, "5mm", "must be a pressure in Pa, or with a unit such as 10kPa, not '5mm', which is a length"),
+            (
+                Dimension::Pressure,
+                "5mm",
+                "must be a pressure in Pa, or with a unit such as 10kPa, not '5mm', which is a length",
+            ),
             (Dimension::Length, "5N", "which is a force"),
             (Dimension::Force, "1MPa", "which is a pressure"),
             (Dimension::Length, "5parsec", "'parsec' is not a known unit"),

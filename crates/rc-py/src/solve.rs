@@ -119,6 +119,7 @@ impl Prepared {
     /// Solves on the threads of the caller.
     fn solve(self, observer: &dyn Observer) -> Result<Parts, CliError> {
         let Self { scene, kernel, map, budget, is_strict, started } = self;
+        let is_callers = map.is_some() && !scene.surface.is_sum();
         let surface = load(&scene, map)?;
         let own = kernel.as_ref().map(|kernel| kernel as &dyn Kernel);
         let named = if own.is_none() { Some(scene.contact.kernel()?) } else { None };
@@ -131,15 +132,27 @@ impl Prepared {
         let solved = scene.solve(problem, started, observer)?;
         let SolvedParts { solution, failure, flow, warnings, wall } = solved.into_parts();
         let solution = solution.into_owned();
-        // This is all that is kept of a map, since its heights are the caller's.
+        // The heights of a map that is the caller's are not kept.
+        let own_map = if is_callers { None } else { surface.shared_map() };
         let height_and_slope = surface.height_and_slope(scene.contact.boundary);
         let waves = surface.wave_file().cloned();
         let contact = scene.contact;
         let failure = failure.map(|failure| failure.to_string());
         let surface = surface.keys;
         let all_warnings = Vec::new();
-        let parts =
-            Parts { surface, waves, contact, solution, failure, flow, warnings, all_warnings, wall, height_and_slope };
+        let parts = Parts {
+            surface,
+            waves,
+            own_map,
+            contact,
+            solution,
+            failure,
+            flow,
+            warnings,
+            all_warnings,
+            wall,
+            height_and_slope,
+        };
         Ok(parts.with_all_warnings())
     }
 }
@@ -148,7 +161,7 @@ impl Prepared {
 fn load(scene: &CheckedScene, map: Option<HeightMap>) -> Result<LoadedSurface, CliError> {
     let expected = match &scene.surface.source {
         Source::File { expected, .. } => *expected,
-        Source::Random { .. } | Source::Waves { .. } => None,
+        Source::Random { .. } | Source::Waves { .. } | Source::Shape { .. } => None,
     };
     match map {
         Some(map) => scene.surface.of_map(Path::new("heights"), map, expected),
@@ -159,7 +172,7 @@ fn load(scene: &CheckedScene, map: Option<HeightMap>) -> Result<LoadedSurface, C
 /// The caller's kernel on the grid of the scene.
 fn own_kernel(symbol: &Bound<'_, PyAny>, scene: &CheckedScene, map: Option<&HeightMap>) -> PyResult<OwnKernel> {
     let grid = match (&scene.surface.source, map) {
-        (Source::Random { grid, .. } | Source::Waves { grid, .. }, _) => *grid,
+        (Source::Random { grid, .. } | Source::Waves { grid, .. } | Source::Shape { grid }, _) => *grid,
         (_, Some(map)) => map.heights.grid(),
         (Source::File { .. }, None) => {
             let surface = scene.surface.clone();

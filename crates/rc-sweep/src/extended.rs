@@ -50,8 +50,8 @@ fn parts(header: &Header) -> Option<(Map<String, Value>, Surfaces<'_>)> {
     let surfaces = header.settings["surfaces"].as_array()?.iter();
     let surfaces: Surfaces<'_> =
         surfaces.map(|value| Some((surface(value)?, value["loads"].as_array()?.as_slice()))).collect::<Option<_>>()?;
-    let has_shape = surfaces.len() == header.shape.surfaces
-        && surfaces.iter().all(|(_, loads)| loads.len() == header.shape.loads);
+    let has_shape =
+        surfaces.len() == header.shape.surfaces && surfaces.iter().all(|(_, loads)| loads.len() == header.shape.loads);
     has_shape.then_some((rest, surfaces))
 }
 
@@ -128,7 +128,8 @@ mod tests {
     use crate::shard::SweepShape;
 
     fn header(seeds: &[u64], loads: &[f64]) -> Header {
-        let surfaces: Vec<Value> = seeds.iter().map(|seed| json!({ "surface": { "seed": seed }, "loads": loads })).collect();
+        let surfaces: Vec<Value> =
+            seeds.iter().map(|seed| json!({ "surface": { "seed": seed }, "loads": loads })).collect();
         let shape = SweepShape { surfaces: seeds.len(), loads: loads.len() };
         Header::whole(shape, json!({ "version": "1", "surfaces": surfaces }))
     }

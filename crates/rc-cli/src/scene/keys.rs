@@ -32,7 +32,7 @@ pub struct SurfaceKeys {
     #[arg(long, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "length::read")]
     pub cell: Option<f64>,
-    /// Side of the cell along y (m) [default: that in the file, or equal spacings]
+    /// Side of the cell along y (m) [default: the file's, or equal spacings]
     #[arg(long, value_name = "M", help_heading = help::FILES, value_parser = length::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "length::read")]
     pub cell_y: Option<f64>,
@@ -63,7 +63,7 @@ pub struct SurfaceKeys {
     #[arg(long, value_name = "VALUE[,VALUE]", help_heading = help::FILES, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub missing: Option<Marks>,
-    /// Masked points of a .gwy file: use (they are missing) or ignore [default: use]
+    /// Masked points of a .gwy: use (missing) or ignore [default: use]
     #[arg(long, value_name = "use|ignore", help_heading = help::FILES)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mask: Option<Mask>,
@@ -72,7 +72,7 @@ pub struct SurfaceKeys {
     /// rc inspect lists the channels of a file.
     #[arg(long, value_name = "NAME", help_heading = help::FILES)]
     pub channel: Option<String>,
-    /// Layout of an ambiguous text: each line a row (matrix) or point (xyz)
+    /// Lines of an ambiguous text: rows (matrix) or points (xyz)
     #[arg(long, value_name = "matrix|xyz", help_heading = help::FILES)]
     pub layout: Option<Layout>,
     /// N of a random surface: shortest wavelength = cell side / N [default: 64]
@@ -162,9 +162,9 @@ pub struct ContactKeys {
     #[arg(long, value_name = "PA", value_parser = pressure::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "pressure::read")]
     pub e_star: Option<f64>,
-    /// Young's modulus of the other body (Pa), with --poisson2 [default: rigid]
+    /// Young's modulus of the other body (Pa) [default: it is rigid]
     ///
-    /// 1/E* is the sum of (1-ν²)/E of both bodies.
+    /// It needs --poisson2 too. 1/E* is the sum of (1-ν²)/E of both bodies.
     #[arg(long, value_name = "PA", help_heading = help::PHYSICS, value_parser = pressure::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "pressure::read", skip_serializing_if = "Option::is_none")]
     pub young2: Option<f64>,

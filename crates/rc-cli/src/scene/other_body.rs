@@ -31,11 +31,10 @@ impl OtherBody {
         let sides = map.sides.filter(|_| !map.notes.contains(&ReadNote::SidesAssumedMetres));
         if let Some(sides) = sides.filter(|sides| !sides.iter().zip(cell.sides()).all(|(a, b)| heights::same(*a, b))) {
             let of = |[x, y]: [f64; 2]| format!("{} x {}", engineering(x, "m"), engineering(y, "m"));
-            return Err(Self::refused(path, format_args!(
-                "is {}, but the cell is {}; both bodies need the same cell",
-                of(sides),
-                of(cell.sides())
-            )));
+            return Err(Self::refused(
+                path,
+                format_args!("is {}, but the cell is {}; both bodies need the same cell", of(sides), of(cell.sides())),
+            ));
         }
         Ok(Self { path: path.to_owned(), map })
     }
@@ -49,11 +48,15 @@ impl OtherBody {
     pub(super) fn add_mirrored(&self, heights: &mut Field) -> Result<Vec<Warning>, CliError> {
         let (grid, other) = (heights.grid(), self.map.heights.grid());
         if [grid.nx(), grid.ny()] != [other.nx(), other.ny()] {
-            return Err(Self::refused(&self.path, format_args!(
-                "has {other} points, but the surface has {grid}; both bodies need the same grid (rc surface --resample)"
-            )));
+            return Err(Self::refused(
+                &self.path,
+                format_args!(
+                    "has {other} points, but the surface has {grid}; both bodies need the same grid (rc surface --resample)"
+                ),
+            ));
         }
-        for (row, other) in heights.values_mut().chunks_mut(grid.nx()).zip(self.map.heights.values().chunks(grid.nx())) {
+        for (row, other) in heights.values_mut().chunks_mut(grid.nx()).zip(self.map.heights.values().chunks(grid.nx()))
+        {
             row.iter_mut().zip(other.iter().rev()).for_each(|(height, other)| *height += other);
         }
         let doubts = warnings::surface::of_map(&self.map).into_iter().chain(warnings::surface::of_record(&self.path));

@@ -181,6 +181,12 @@ impl SurfaceSetup {
         }
     }
 
+    /// Whether the heights are a sum, and not those of a file or a program alone.
+    #[must_use]
+    pub fn is_sum(&self) -> bool {
+        self.form.is_some() || self.keys.add.is_some()
+    }
+
     /// Number of elements of the finest grid.
     ///
     /// For a height map it is an upper bound from the length of its file.
@@ -220,7 +226,11 @@ impl SurfaceSetup {
     }
 
     /// A surface of waves, from a file or not, with what is added to it.
-    fn generated(&self, waves: Option<(Arc<Surface>, Option<Arc<WaveFile>>)>, grid: Grid) -> Result<LoadedSurface, CliError> {
+    fn generated(
+        &self,
+        waves: Option<(Arc<Surface>, Option<Arc<WaveFile>>)>,
+        grid: Grid,
+    ) -> Result<LoadedSurface, CliError> {
         if self.keys.add.is_some() {
             let sampled = waves.map_or_else(|| Ok(Field::zeros(grid)), |(surface, _)| sampled(&surface, grid))?;
             let mut heights = sampled;
@@ -373,7 +383,9 @@ impl LoadedSurface {
             let Moments { rms_height, rms_slope, .. } = waves.moments();
             return [rms_height, rms_slope];
         }
-        let of = |statistics: fn(&Field) -> [f64; 2]| self.shape.on(self.grid_of_statistics()).map_or([f64::NAN; 2], |h| statistics(&h));
+        let of = |statistics: fn(&Field) -> [f64; 2]| {
+            self.shape.on(self.grid_of_statistics()).map_or([f64::NAN; 2], |h| statistics(&h))
+        };
         match boundary {
             Boundary::Free => *self.of_map[1].get_or_init(|| of(height_and_slope_of_patch)),
             Boundary::Periodic => *self.of_map[0].get_or_init(|| of(height_and_slope_of_grid)),
@@ -403,6 +415,15 @@ impl LoadedSurface {
     pub fn map(&self) -> Option<(&Field, &AsRead)> {
         match &self.shape {
             Shape::Map { heights, as_read } => Some((heights, as_read)),
+            Shape::Random(_) | Shape::Waves(_) | Shape::Formed { .. } => None,
+        }
+    }
+
+    /// The map of [`LoadedSurface::map`], as its owner.
+    #[must_use]
+    pub fn shared_map(&self) -> Option<(Arc<Field>, AsRead)> {
+        match &self.shape {
+            Shape::Map { heights, as_read } => Some((Arc::clone(heights), as_read.clone())),
             Shape::Random(_) | Shape::Waves(_) | Shape::Formed { .. } => None,
         }
     }

@@ -24,9 +24,10 @@ pub(crate) struct SweepArgs {
     /// Scene files; each is solved for all seeds and loads
     #[arg(value_name = "SCENE.toml")]
     pub(crate) scene_files: Vec<PathBuf>,
-    /// Mean pressures (Pa): 1e4:1e6:8 (geometric), 1e4:1e6:8:linear, 10kPa,50kPa
+    /// Mean pressures (Pa): 1e4:1e6:8 (geometric), 1e4:1e6:8:linear, 1e4,1e5
     ///
-    /// first:last:count is geometric, first:last:count:linear is linear; or values with commas between them.
+    /// first:last:count is geometric, first:last:count:linear is linear; or values with commas between them. Numbers
+    /// may have units, such as 10kPa:1MPa:8.
     #[arg(long, value_name = "LIST", help_heading = "Sweep", value_parser = pressures, allow_hyphen_values = true)]
     pub(crate) pressures: Option<Loads>,
     /// Penetrations (m), in the same forms, instead of --pressures
@@ -45,6 +46,8 @@ pub(crate) struct SweepArgs {
     #[arg(long, help_heading = "Sweep")]
     pub(crate) fields: bool,
     /// Continue the sweep in --out, or start it
+    ///
+    /// More loads, seeds and variations may be added: rows that exist are kept.
     #[arg(long, help_heading = "Sweep")]
     pub(crate) resume: bool,
     /// Solve part i of n; auto: the part of this task of a job array

@@ -74,7 +74,7 @@ impl Surfaces {
             };
             for keys in seeded(args.seeds.as_ref(), name, scene)? {
                 let surface = SweptSurface::new(name, keys, control, &loads).map_err(in_scene)?;
-                surfaces.push(SweptSurface { varied: values.clone(), ..surface });
+                surfaces.push(surface.with(values.clone()));
             }
         }
         Ok(Self { control, all: surfaces, n_scenes, keeps_fields: args.fields, run, threads })
@@ -142,6 +142,11 @@ impl SweptSurface {
     /// Ratio of the memory of a row to that of its contact alone.
     pub(super) fn memory_factor(&self) -> f64 {
         memory_factor(&self.contact)
+    }
+
+    /// The surface with these values of varied keys.
+    pub(super) fn with(self, varied: Varied) -> Self {
+        Self { varied, ..self }
     }
 
     /// Checks the keys of `scene` under the first load. The loads share all other keys.

@@ -60,7 +60,8 @@ fn a_sphere_under_a_force_is_hertzs() {
     assert_repeats(&place, "hertz");
     let scene = text(&place.bytes("hertz/scene.toml"));
     assert!(scene.contains("force = 10.0") && !scene.contains("waves"), "{scene}");
-    let by_depth = solved(&place, &format!("{} --penetration {}m", &words[..words.len() - 12], number(&found, "penetration")));
+    let by_depth =
+        solved(&place, &format!("{} --penetration {}m", &words[..words.len() - 12], number(&found, "penetration")));
     assert_close("load", number(&by_depth, "mean_pressure"), 1e7, 1e-3);
 }
 
@@ -70,7 +71,7 @@ fn a_cone_is_sneddons() {
     let words = "--shape cone --angle 5deg --cell 1mm --grid 256 --boundary free --e-star 1GPa --force 500mN";
     let found = solved(&place, words);
     let cone = Cone { slope: 5.0_f64.to_radians().tan() };
-    let a = (2.0 * 0.5e-3 / (std::f64::consts::PI * cone.slope)).sqrt() ;
+    let a = (2.0 * 0.5e-3 / (std::f64::consts::PI * cone.slope)).sqrt();
     assert_close("load", cone.load(a), 0.5 / 1e9 / 1e-6, 1e-12);
     assert_within_bar(&found, AREA, std::f64::consts::PI * a * a);
     assert_within_bar(&found, PENETRATION, 1e-3 * cone.penetration(a));
@@ -153,7 +154,8 @@ fn a_shape_is_added_to_a_surface() {
 fn two_elastic_bodies_have_one_modulus() {
     let place = Place::new();
     let words = "--waves 4 --grid 64 --pressure 50MPa --rms 100um --method uniform";
-    let found = solved(&place, &format!("{words} --young 200GPa --poisson 0.3 --young2 70GPa --poisson2 0.33 --out two"));
+    let found =
+        solved(&place, &format!("{words} --young 200GPa --poisson 0.3 --young2 70GPa --poisson2 0.33 --out two"));
     let body = |young, poisson| Elasticity::from_young_poisson(young, poisson).expect("a body").e_star();
     let e_star = 1.0 / (1.0 / body(200e9, 0.3) + 1.0 / body(70e9, 0.33));
     let one = solved(&place, &format!("{words} --e-star {e_star}"));
@@ -196,7 +198,9 @@ fn another_body_is_mirrored_and_added() {
     }
     assert_repeats(&place, "two");
     // The other body of a random surface, and of a shape.
-    for (first, out) in [("--waves 4 --rms 1um --grid 32", "random"), ("--shape sphere --radius 10mm --grid 32", "sphere")] {
+    for (first, out) in
+        [("--waves 4 --rms 1um --grid 32", "random"), ("--shape sphere --radius 10mm --grid 32", "sphere")]
+    {
         solved(&place, &format!("{first} --add a.npy {words} {out}"));
         assert_repeats(&place, out);
     }
@@ -223,7 +227,8 @@ fn numbers_have_units_in_scene_files_too() {
     let place = Place::new();
     place.write("a.toml", "waves = 4\ngrid = 64\ncell = \"1mm\"\nrms = \"0.5 µm\"\nyoung = \"0.2GPa\"\npoisson = 0.3\npressure = \"50kPa\"\n");
     let with_units = solved(&place, "a.toml --out a");
-    let bare = solved(&place, "--waves 4 --grid 64 --cell 1e-3 --rms 5e-7 --young 2e8 --poisson 0.3 --pressure 5e4 --out b");
+    let bare =
+        solved(&place, "--waves 4 --grid 64 --cell 1e-3 --rms 5e-7 --young 2e8 --poisson 0.3 --pressure 5e4 --out b");
     assert_eq!(with_units["area_fraction"], bare["area_fraction"]);
     assert!(place.bytes("a/scene.toml") == place.bytes("b/scene.toml"));
     place.write("b.toml", "waves = 4\npressure = \"50mm\"\n");
@@ -238,7 +243,10 @@ fn numbers_have_units_in_scene_files_too() {
         ("surface --waves 4 --rms 1kPa", "which is a pressure"),
         ("solve --waves 4 --pressure 1e5 --force 1N", "both pressure and force are given; give exactly one"),
         ("solve --waves 4 --force -1N", "force: must be positive"),
-        ("solve --shape sphere --radius 1mm --force 1N", "shape: a shape alone needs cell (m), and e_star (Pa) or young"),
+        (
+            "solve --shape sphere --radius 1mm --force 1N",
+            "shape: a shape alone needs cell (m), and e_star (Pa) or young",
+        ),
         ("solve --radius 1mm --pressure 1e5", "radius: belongs to a shape; give --shape too"),
     ] {
         assert_refused(&place.run(&words.split(' ').collect::<Vec<_>>()), expected);

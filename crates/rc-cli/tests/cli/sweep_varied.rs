@@ -17,7 +17,10 @@ fn column(rows: &[Vec<String>], name: &str) -> Vec<String> {
 #[test]
 fn varied_keys_have_columns_and_rows_are_those_of_single_solves() {
     let place = Place::new();
-    assert_solved(&run(&place, "--pressures 1e5,200kPa --vary layer-thickness=0.5mm,2mm --vary hardness=5MPa,1e7 --out s"));
+    assert_solved(&run(
+        &place,
+        "--pressures 1e5,200kPa --vary layer-thickness=0.5mm,2mm --vary hardness=5MPa,1e7 --out s",
+    ));
     let rows = table(&place.path("s"));
     assert_eq!(column(&rows, "control_value"), ["100000.0", "200000.0"].repeat(4));
     let thickness = ["0.0005"; 4].into_iter().chain(["0.002"; 4]).collect::<Vec<_>>();
@@ -36,7 +39,8 @@ fn varied_keys_have_columns_and_rows_are_those_of_single_solves() {
     assert_solved(&run(&place, "--vary force=10N,20N --out forces"));
     let rows = table(&place.path("forces"));
     assert_eq!(column(&rows, "force"), ["10.0", "20.0"]);
-    let pressures: Vec<f64> = column(&rows, "control_value").iter().map(|cell| cell.parse().expect("a number")).collect();
+    let pressures: Vec<f64> =
+        column(&rows, "control_value").iter().map(|cell| cell.parse().expect("a number")).collect();
     assert!((pressures[0] / 1e5 - 1.0).abs() < 1e-12 && (pressures[1] / 2e5 - 1.0).abs() < 1e-12, "{pressures:?}");
 }
 

@@ -17,8 +17,7 @@ type Parameter = (&'static str, &'static str, Option<f64>);
 pub(super) fn form(keys: &SurfaceKeys, cell: PeriodicCell) -> Result<Option<Form>, CliError> {
     let radius = ("radius", "m", keys.radius);
     let angle = ("angle", "degrees", keys.angle);
-    let [wavelength, amplitude] =
-        [("wavelength", "m", keys.wavelength), ("wave_amplitude", "m", keys.wave_amplitude)];
+    let [wavelength, amplitude] = [("wavelength", "m", keys.wavelength), ("wave_amplitude", "m", keys.wave_amplitude)];
     let wanted: &[Parameter] = match keys.shape {
         Some(FormName::Sphere | FormName::Cylinder) => &[radius],
         Some(FormName::Cone) => &[angle],

@@ -58,8 +58,7 @@ fn lower_layer(path: &Path) -> Result<Scene, CliError> {
 }
 
 fn two_loads(contact: &ContactKeys) -> String {
-    let loads =
-        [("pressure", contact.pressure), ("penetration", contact.penetration), ("force", contact.force)];
+    let loads = [("pressure", contact.pressure), ("penetration", contact.penetration), ("force", contact.force)];
     let given: Vec<&str> = loads.iter().filter(|(_, value)| value.is_some()).map(|(key, _)| *key).collect();
     format!("both {} are given; give exactly one", given.join(" and "))
 }
@@ -74,7 +73,9 @@ fn check_alternatives(scene: &Scene) -> Result<(), String> {
         return Err("e_star replaces young and poisson; give either e_star or both of them".into());
     }
     if contact.e_star.is_some() && (contact.young2.is_some() || contact.poisson2.is_some()) {
-        return Err("e_star is that of both bodies; give either e_star, or young and poisson with young2 and poisson2".into());
+        return Err(
+            "e_star is that of both bodies; give either e_star, or young and poisson with young2 and poisson2".into()
+        );
     }
     if [surface.rms, surface.rms_slope, surface.c0].iter().flatten().count() > 1 {
         return Err("rms, rms_slope and c0 are alternatives; give one".into());

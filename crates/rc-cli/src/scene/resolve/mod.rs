@@ -11,8 +11,8 @@ mod map;
 mod surface;
 
 pub use checks::checked_grid;
-pub use contact::{ContactSetup, Place, contact, kernel};
 pub(crate) use contact::mean_pressure;
+pub use contact::{ContactSetup, Place, contact, kernel};
 pub(crate) use elastic_layer::check_thickness;
 pub use layers::layers;
 pub use map::{check_cell_and_material, check_size, check_size_and_material};
