@@ -179,7 +179,7 @@ impl Inspected {
         let notes = map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
         let cell = PeriodicCell::rectangle(cell, cell_y.unwrap_or(cell)).map_err(CliError::input)?;
         let is_complete = map.missing() == 0;
-        let heights = heights::in_cell(path, map.heights, cell)?;
+        let (heights, _) = heights::divided(heights::in_cell(path, map.heights, cell)?, cell.side());
         let record = if is_complete {
             SurfaceRecord::of(&heights, cell.side(), moments_of_grid(&heights))
         } else {
