@@ -232,9 +232,10 @@ impl SweepPlan {
     #[must_use]
     pub fn describe(&self, row: &SweepRow) -> String {
         let PlannedSurface { varied, seed, .. } = &self.surfaces[row.surface];
-        let varied: String = varied.iter().map(|(key, value)| format!("{key} {value}, ")).collect();
-        let seed = seed.map_or_else(String::new, |seed| format!("seed {seed}, "));
-        format!("row {} ({varied}{seed}{} {:e})", row.index + 1, self.control.key(), row.load)
+        let mut words: Vec<String> = varied.iter().map(|(key, value)| format!("{key} {value}")).collect();
+        words.extend(seed.map(|seed| format!("seed {seed}")));
+        words.push(format!("{} {:e}", self.control.key(), row.load));
+        format!("row {} ({})", row.index + 1, words.join(", "))
     }
 
     /// The first columns of a row: scene if there are several, seed, load, varied settings.
