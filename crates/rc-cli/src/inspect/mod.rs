@@ -24,7 +24,7 @@ use crate::files::names::{SCENE_FILE, SUMMARY_FILE};
 use crate::files::result::ResultFolder;
 use crate::scene::heights::CellOfMap;
 use crate::scene::keys::{RunKeys, Scene, SurfaceKeys};
-use crate::scene::surface::LoadedSurface;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::values::GridSpec;
 use crate::scene::{file, heights, resolve};
 use crate::text::{solved, written};

@@ -5,6 +5,7 @@ pub(crate) mod features;
 pub mod file;
 pub mod form;
 pub mod keys;
+pub mod loaded;
 pub mod resolve;
 pub mod surface;
 pub mod time_limit;

@@ -10,8 +10,9 @@ use super::solved::{ProblemSetup, Solved};
 use crate::error::CliError;
 use crate::scene::features;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve::{self, ContactSetup};
-use crate::scene::surface::{LoadedSurface, SurfaceSetup};
+use crate::scene::surface::SurfaceSetup;
 use crate::scene::values::{Fraction, ToleranceSpec};
 
 /// A checked contact problem, common to the command line and the Python module.

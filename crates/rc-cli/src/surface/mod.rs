@@ -21,7 +21,7 @@ use crate::inspect::text::heights as lines;
 use crate::run::threads;
 use crate::scene::heights::CellOfMap;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene, SurfaceKeys};
-use crate::scene::surface::LoadedSurface;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::{heights, resolve};
 use crate::warnings::shown::{refuse, tell};
 use crate::warnings::surface as doubts;

@@ -12,7 +12,7 @@ use rc_sweep::to_json;
 use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SCENE_FILE};
 use crate::inspect::record::SurfaceRecord;
 use crate::scene::file;
-use crate::scene::surface::LoadedSurface;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::wave_file::WAVES_FILE;
 
 /// A format of the heights alone.

@@ -116,8 +116,8 @@ mod tests {
 
     use super::problems::RowScenes;
     use super::*;
+    use crate::scene::loaded::LoadedSurface;
     use crate::scene::resolve::ContactSetup;
-    use crate::scene::surface::LoadedSurface;
 
     /// The scenes of a sweep whose first row does not converge, and whose other rows are refused.
     struct FirstRowHasOneIteration<'a>(&'a Surfaces);

@@ -8,8 +8,8 @@ use rc_sweep::WarningCode::{Coarse, Load};
 
 use super::surface::{Shape, border, steep};
 use crate::scene::keys::KernelName;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve::ContactSetup;
-use crate::scene::surface::LoadedSurface;
 
 /// Mean pressure in E* above which strains are not small.
 const LARGE_MEAN: f64 = 0.1;

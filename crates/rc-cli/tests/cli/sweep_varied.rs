@@ -27,6 +27,9 @@ fn varied_keys_have_columns_and_rows_are_those_of_single_solves() {
     assert_eq!(column(&rows, "layer_thickness"), thickness);
     let hardness = [["5000000.0"; 2], ["10000000.0"; 2]].concat().repeat(2);
     assert_eq!(column(&rows, "hardness"), hardness);
+    assert_solved(&place.run(&["report", "s"]));
+    let page = text(&place.bytes("s/report.html"));
+    assert!(page.contains("layer_thickness 0.002, hardness 10000000.0"), "a curve for each variation");
     let words = "solve --waves 4 --grid 128 --quiet --pressure 2e5 --layer-thickness 2e-3 --hardness 5e6 --out one";
     assert_solved(&place.run(&words.split(' ').collect::<Vec<_>>()));
     let one = place.json("one/summary.json")["area_fraction"].to_string();
