@@ -10,6 +10,10 @@ import numpy as np
 
 #: Elements per side: a number, ``(nx, ny)``, or text such as ``"512x256"``.
 Grid = Union[int, tuple[int, int], str]
+#: A number in SI units, or text with a unit such as ``"10kPa"``.
+Quantity = Union[float, str]
+#: A shape at the centre of the cell.
+Shape = Literal["sphere", "cylinder", "cone", "wave", "flat"]
 #: What is beyond the heights.
 Boundary = Literal["periodic", "free"]
 #: How the problem is solved.

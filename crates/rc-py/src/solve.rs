@@ -8,7 +8,8 @@ use pyo3::types::PyDict;
 use rc_cli::error::CliError;
 use rc_cli::run::threads;
 use rc_cli::scene::keys::{KernelName, RunKeys, Scene};
-use rc_cli::scene::surface::{LoadedSurface, Source};
+use rc_cli::scene::loaded::LoadedSurface;
+use rc_cli::scene::surface::Source;
 use rc_cli::solve::{CheckedScene, SolvedParts};
 use rc_cli::warnings::shown::refuse;
 use rc_core::{Kernel, Observer};
@@ -119,6 +120,7 @@ impl Prepared {
     /// Solves on the threads of the caller.
     fn solve(self, observer: &dyn Observer) -> Result<Parts, CliError> {
         let Self { scene, kernel, map, budget, is_strict, started } = self;
+        let is_callers = map.is_some() && !scene.surface.is_sum();
         let surface = load(&scene, map)?;
         let own = kernel.as_ref().map(|kernel| kernel as &dyn Kernel);
         let named = if own.is_none() { Some(scene.contact.kernel()?) } else { None };
@@ -131,7 +133,8 @@ impl Prepared {
         let solved = scene.solve(problem, started, observer)?;
         let SolvedParts { solution, failure, flow, warnings, wall } = solved.into_parts();
         let solution = solution.into_owned();
-        // This is all that is kept of a map, since its heights are the caller's.
+        // The heights of a map that is the caller's are not kept.
+        let own_map = if is_callers { None } else { surface.shared_map() };
         let height_and_slope = surface.height_and_slope(scene.contact.boundary);
         let waves = surface.wave_file().cloned();
         let contact = scene.contact;
@@ -141,6 +144,7 @@ impl Prepared {
             surface,
             origin,
             waves,
+            own_map,
             contact,
             solution,
             failure,
@@ -158,7 +162,7 @@ impl Prepared {
 fn load(scene: &CheckedScene, map: Option<HeightMap>) -> Result<LoadedSurface, CliError> {
     let expected = match &scene.surface.source {
         Source::File { expected, .. } => *expected,
-        Source::Random { .. } | Source::Waves { .. } => None,
+        Source::Random { .. } | Source::Waves { .. } | Source::Shape { .. } => None,
     };
     match map {
         Some(map) => scene.surface.of_map(Path::new("heights"), map, expected),
@@ -169,7 +173,7 @@ fn load(scene: &CheckedScene, map: Option<HeightMap>) -> Result<LoadedSurface, C
 /// The caller's kernel on the grid of the scene.
 fn own_kernel(symbol: &Bound<'_, PyAny>, scene: &CheckedScene, map: Option<&HeightMap>) -> PyResult<OwnKernel> {
     let grid = match (&scene.surface.source, map) {
-        (Source::Random { grid, .. } | Source::Waves { grid, .. }, _) => *grid,
+        (Source::Random { grid, .. } | Source::Waves { grid, .. } | Source::Shape { grid }, _) => *grid,
         (_, Some(map)) => map.heights.grid(),
         (Source::File { .. }, None) => {
             let surface = scene.surface.clone();

@@ -7,6 +7,7 @@ use std::time::Duration;
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
 use pyo3::prelude::*;
 use rc_cli::error::CliError;
+use rc_cli::scene::as_read::AsRead;
 use rc_cli::scene::keys::SurfaceKeys;
 use rc_cli::scene::resolve::ContactSetup;
 use rc_cli::scene::wave_file::WaveFile;
@@ -26,6 +27,8 @@ pub(crate) struct Parts {
     pub(crate) origin: Option<MapOrigin>,
     /// The file of waves that was solved, if the surface is from one.
     pub(crate) waves: Option<Arc<WaveFile>>,
+    /// The map that was solved, if it is not the caller's array.
+    pub(crate) own_map: Option<(Arc<Field>, AsRead)>,
     pub(crate) contact: ContactSetup,
     pub(crate) solution: Solution<'static>,
     /// Message about a solution that did not reach the tolerance.
@@ -236,9 +239,12 @@ impl Solved {
 
     /// Writes the result folder of `rc solve --out`.
     fn save(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-        let heights = self.map.as_ref().map(|map| map.array.bind(py).try_readonly()).transpose();
+        let own = self.found.parts.own_map.as_ref();
+        let callers = self.map.as_ref().filter(|_| own.is_none());
+        let heights = callers.map(|map| map.array.bind(py).try_readonly()).transpose();
         let heights = heights.map_err(|cause| bad_input(format_args!("heights: {cause}")))?;
-        let map = heights.as_ref().map(|heights| self.map_heights(heights)).transpose()?;
+        let callers = heights.as_ref().map(|heights| self.map_heights(heights)).transpose()?;
+        let map = own.map(|(heights, as_read)| MapHeights::InCell { heights, as_read }).or(callers);
         let written = to_end(py, self.found.threads, || {
             rc_sweep::files::check_folder(&folder)?;
             self.found.files(map).write(&folder, self.found.summary())

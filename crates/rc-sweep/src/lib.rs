@@ -48,6 +48,7 @@ mod content;
 mod deal;
 mod ensemble;
 mod error;
+mod extended;
 mod folder;
 mod job;
 mod journal;

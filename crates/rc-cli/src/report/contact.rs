@@ -118,6 +118,7 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
     let surface = match (keys.file(), keys.waves, keys.hurst, keys.seed) {
         (Some(("spectrum", _)), ..) => "a surface of given waves".to_owned(),
         (Some(_), ..) => "a height map".to_owned(),
+        (None, None, ..) if keys.is_shape() => "a shape".to_owned(),
         (None, Some(waves), Some(hurst), Some(seed)) => format!("{waves} waves, H = {hurst}, seed {seed}"),
         _ => "a random surface".to_owned(),
     };

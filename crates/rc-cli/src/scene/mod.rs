@@ -3,7 +3,9 @@
 pub mod as_read;
 pub(crate) mod features;
 pub mod file;
+pub mod form;
 pub mod keys;
+pub mod loaded;
 pub(crate) mod origin;
 pub mod resolve;
 pub mod surface;
@@ -13,3 +15,5 @@ pub mod wave_file;
 
 pub mod heights;
 mod names;
+mod other_body;
+pub(crate) mod quantity;

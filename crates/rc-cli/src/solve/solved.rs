@@ -16,8 +16,8 @@ use super::result_files::{MapHeights, ResultFiles};
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
 use crate::files::coarsen::check_factor;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve::{self, ContactSetup, Place};
-use crate::scene::surface::LoadedSurface;
 use crate::scene::values::Fraction;
 use crate::warnings;
 

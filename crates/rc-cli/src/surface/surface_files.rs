@@ -12,7 +12,7 @@ use rc_sweep::to_json;
 use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SCENE_FILE};
 use crate::inspect::record::SurfaceRecord;
 use crate::scene::file;
-use crate::scene::surface::LoadedSurface;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::wave_file::WAVES_FILE;
 
 /// A format of the heights alone.
@@ -80,7 +80,7 @@ pub(crate) fn stage_folder(
 ) -> Result<Staged, FileError> {
     let (field, factor) = in_metres(surface, heights, side);
     // A generated surface has a default material, the others have none.
-    let material = if surface.keys.heights.is_some() || surface.keys.spectrum.is_some() { "--e-star ... " } else { "" };
+    let material = if surface.keys.file().is_some() || surface.keys.is_shape() { "--e-star ... " } else { "" };
     let scene = format!(
         "# The surface; `rc solve scene.toml {material}--pressure ...` presses it.\n\n{}",
         file::to_toml(&surface.keys)

@@ -10,7 +10,7 @@ use crate::error::CliError;
 use crate::inspect::record::{SurfaceRecord, TreatmentRow};
 use crate::scene::heights::CellOfMap;
 use crate::scene::keys::SurfaceKeys;
-use crate::scene::surface::LoadedSurface;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::{heights, origin, resolve};
 use crate::warnings::surface as doubts;
 
@@ -41,7 +41,7 @@ pub(crate) struct Prepared {
 impl Prepared {
     /// The record of the surface, whose heights are given in λ.
     pub(crate) fn record(&self, heights: &rc_core::Field) -> SurfaceRecord {
-        let record = SurfaceRecord::of(heights, self.side, self.surface.moments());
+        let record = SurfaceRecord::of(heights, self.side, self.surface.moments(heights));
         let warnings = [&self.warnings[..], &record.shape().warnings()].concat();
         SurfaceRecord {
             treatments: self.effects.iter().map(TreatmentRow::from).collect(),

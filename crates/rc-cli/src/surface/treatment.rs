@@ -5,6 +5,7 @@ use rc_core::{Grid, GridError};
 use rc_heights::{Crop, Fill, Flip, Level, Periodic, Repeat, Treatment};
 
 use crate::error::CliError;
+use crate::scene::quantity::length;
 use crate::scene::values::GridSpec;
 
 /// Robust deviations of a spike, if none are given.
@@ -50,7 +51,7 @@ pub(crate) struct TreatmentKeys {
     /// Gaussian filter (ISO 16610-61) that halves waves of this length (m)
     ///
     /// Shorter waves lose more. The length is four points or more.
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = length::parse, allow_hyphen_values = true)]
     pub(crate) low_pass: Option<f64>,
     /// Fewer points (means) or more (cubic) on the same area: 512, or 512x256
     #[arg(long, value_name = "N", allow_hyphen_values = true)]

@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use rc_core::quantity::{count, digits, engineering};
+use rc_core::{Field, PeriodicCell};
+use rc_fractal::height_and_slope_of_grid;
 use rc_heights::suspicion::{Counter, Suspicions};
 use rc_heights::{BorderStep, HeightMap};
 use rc_sweep::Warning;
@@ -56,6 +58,13 @@ impl Shape {
         Self { rms_slope, range: RANGE_OF_WAVES * rms_height, sides }
     }
 
+    /// The shape of heights (m) in a cell, which continue across its borders.
+    pub(crate) fn of_heights(heights: &Field, cell: PeriodicCell) -> Self {
+        // Slopes are per λ.
+        let [_, slope] = height_and_slope_of_grid(heights);
+        Self { rms_slope: slope / cell.side(), range: heights.max() - heights.min(), sides: cell.sides() }
+    }
+
     /// Doubts about units and slopes.
     pub(crate) fn warnings(self) -> Vec<Warning> {
         let (slope, shorter) = (digits(self.rms_slope, 3), self.sides[0].min(self.sides[1]));
@@ -72,15 +81,21 @@ impl Shape {
             );
             found.push(Warning::new(Units, text));
         }
-        if self.rms_slope > SMALL_SLOPE {
-            let text = format!(
-                "an rms slope of {slope} is too steep for the theory, which neglects squares of slopes; expect errors of \
-                 some 10 %, or remove short waves (rc surface --low-pass)"
-            );
-            found.push(Warning::new(Slope, text));
-        }
+        found.extend(steep(self.rms_slope));
         found
     }
+}
+
+/// The doubt about a slope that the theory takes for small.
+pub(crate) fn steep(rms_slope: f64) -> Option<Warning> {
+    let text = || {
+        format!(
+            "an rms slope of {} is too steep for the theory, which neglects squares of slopes; expect errors of \
+             some 10 %, or remove short waves (rc surface --low-pass)",
+            digits(rms_slope, 3)
+        )
+    };
+    (rms_slope > SMALL_SLOPE).then(|| Warning::new(Slope, text()))
 }
 
 /// Doubts about the values of a map in metres, which may have missing points.

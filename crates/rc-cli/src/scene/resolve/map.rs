@@ -1,4 +1,4 @@
-//! Keys that a surface from a file needs.
+//! Keys that a surface from a file or a shape needs.
 //!
 //! The example's size and material belong to another surface.
 
@@ -35,9 +35,14 @@ pub fn check_cell_and_material(surface: &SurfaceKeys, contact: &ContactKeys) -> 
 
 fn check(surface: &SurfaceKeys, missing: impl IntoIterator<Item = &'static str>) -> Result<(), CliError> {
     let missing: Vec<&str> = missing.into_iter().collect();
-    let what = if surface.spectrum.is_some() { "spectrum: a file of waves" } else { "heights: a height map" };
-    match surface.file() {
-        Some(_) if !missing.is_empty() => Err(CliError::input(format_args!(
+    let what = match surface.file() {
+        Some(("spectrum", _)) => "spectrum: a file of waves",
+        Some(_) => "heights: a height map",
+        None if surface.is_shape() => "shape: a shape alone",
+        None => return Ok(()),
+    };
+    match &missing[..] {
+        [_, ..] => Err(CliError::input(format_args!(
             "{what} needs {} too; the default values are for random surfaces only",
             missing.join(", and ")
         ))),
@@ -54,7 +59,7 @@ const CELL: &str = "cell (m)";
 fn size(surface: &SurfaceKeys) -> Result<Option<&'static str>, CliError> {
     let is_known = match &surface.heights {
         Some(path) => surface.cell.is_some() || rc_heights::may_have_sides(path, &surface.read_params())?,
-        None => surface.cell.is_some() || surface.spectrum.is_none(),
+        None => surface.cell.is_some() || surface.spectrum.is_none() && !surface.is_shape(),
     };
     Ok((!is_known).then_some(CELL))
 }

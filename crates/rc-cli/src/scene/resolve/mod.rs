@@ -5,11 +5,13 @@
 mod checks;
 mod contact;
 mod elastic_layer;
+mod form;
 mod layers;
 mod map;
 mod surface;
 
 pub use checks::checked_grid;
+pub(crate) use contact::mean_pressure;
 pub use contact::{ContactSetup, Place, contact, kernel};
 pub(crate) use elastic_layer::check_thickness;
 pub use layers::layers;
