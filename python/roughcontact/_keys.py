@@ -10,6 +10,10 @@ import numpy as np
 
 #: Elements per side: a number, ``(nx, ny)``, or text such as ``"512x256"``.
 Grid = Union[int, tuple[int, int], str]
+#: A number in SI units, or text with a unit such as ``"10kPa"``.
+Quantity = Union[float, str]
+#: A shape at the centre of the cell.
+Shape = Literal["sphere", "cylinder", "cone", "wave", "flat"]
 #: What is beyond the heights.
 Boundary = Literal["periodic", "free"]
 #: How the problem is solved.
@@ -56,7 +60,8 @@ def _plain(name: str, value: Any) -> Any:
 
 def with_absolute_files(keys: dict[str, Any]) -> dict[str, Any]:
     """The keys with absolute paths of the files of a surface, since the working directory may be another one later."""
-    return {name: os.path.abspath(value) if name in SURFACE_FILES else value for name, value in keys.items()}
+    files = (*SURFACE_FILES, "add")
+    return {name: os.path.abspath(value) if name in files else value for name, value in keys.items()}
 
 
 def length(name: str, value: Any) -> float:

@@ -274,8 +274,10 @@ def prepare(
     cell_y: float | None = None,
     crop: str | None = None,
     flip: str | Sequence[str] | None = None,
+    despike: float | bool | None = None,
     fill: Literal["laplace", "nearest", "lowest"] | None = None,
     level: Literal["mean", "plane", "quadratic"] | None = None,
+    high_pass: float | None = None,
     periodic: Literal["mirror", "window", "as-is"] | None = None,
     taper: float | None = None,
     low_pass: float | None = None,
@@ -287,7 +289,8 @@ def prepare(
 ) -> HeightMap:
     """Treat a measured map, as ``rc surface`` does, in the order of the parameters.
 
-    Most measured maps need ``crop="square", level="plane", fill="laplace", periodic="mirror"``.
+    Most measured maps need ``crop="measured", despike=True, level="plane", fill="laplace", periodic="mirror"``, which
+    ``rc prepare`` does.
 
     Parameters
     ----------
@@ -296,13 +299,17 @@ def prepare(
     cell, cell_y : float, optional
         Sides (m) along x and y, where the map does not know them. Without ``cell_y``, spacings are equal along x and y.
     crop : str, optional
-        The part that is kept: ``"square"``, or numbers of points such as ``"512"``, ``"512x256"``, ``"512x256+100+50"``.
+        The part that is kept: ``"measured"``, ``"square"``, or numbers of points such as ``"512"``, ``"512x256"``, ``"512x256+100+50"``.
     flip : str or sequence of str, optional
         Axes that are mirrored, ``"x"``, ``"y"`` or ``"z"``. Several are ``"x,y"`` or ``("x", "y")``.
+    despike : float or bool, optional
+        Isolated points are replaced if they are farther than this many robust deviations from their neighbours, 8 if True.
     fill : {"laplace", "nearest", "lowest"}, optional
         How missing points get heights.
     level : {"mean", "plane", "quadratic"}, optional
         The form that is subtracted.
+    high_pass : float, optional
+        Gaussian filter (L-filter). Waves of this length (m) keep half of their height, and longer ones go.
     periodic : {"mirror", "window", "as-is"}, optional
         How opposite borders are made to meet. ``mirror`` doubles the sides.
     taper : float, optional
@@ -331,8 +338,10 @@ def prepare(
     flags = {
         "--crop": crop,
         "--flip": flip,
+        "--despike": (8.0 if despike else None) if isinstance(despike, bool) else despike,
         "--fill": fill,
         "--level": level,
+        "--high-pass": high_pass,
         "--periodic": periodic,
         "--taper": taper,
         "--low-pass": low_pass,

@@ -22,6 +22,8 @@ from roughcontact._keys import (
     Method,
     Missing,
     Path,
+    Quantity,
+    Shape,
     plain,
 )
 from roughcontact._maps import Heights, map_parts
@@ -40,8 +42,8 @@ def solve(
     heights: Heights | None = None,
     *,
     scene: Path | None = None,
-    cell: float | None = None,
-    cell_y: float | None = None,
+    cell: Quantity | None = None,
+    cell_y: Quantity | None = None,
     spectrum: Path | None = None,
     psd: Path | None = None,
     psd_convention: Literal["plain", "fourier"] | None = None,
@@ -49,14 +51,14 @@ def solve(
     heights_like: Literal["gaussian", "map"] | None = None,
     unit: LengthUnit | None = None,
     height_unit: LengthUnit | None = None,
-    height_scale: float | None = None,
+    height_scale: Quantity | None = None,
     channel: str | None = None,
     layout: Literal["matrix", "xyz"] | None = None,
     missing: Missing | None = None,
     mask: Mask | None = None,
     waves: int | None = None,
     hurst: float | None = None,
-    rms: float | None = None,
+    rms: Quantity | None = None,
     rms_slope: float | None = None,
     c0: float | None = None,
     seed: int | None = None,
@@ -64,17 +66,26 @@ def solve(
     roll_off: float | None = None,
     low_cut: float | None = None,
     amplitudes: Literal["fixed", "random"] | None = None,
+    shape: Shape | None = None,
+    radius: Quantity | None = None,
+    angle: Quantity | None = None,
+    wavelength: Quantity | None = None,
+    wave_amplitude: Quantity | None = None,
+    add: Path | None = None,
     grid: Grid | None = None,
-    young: float | None = None,
+    young: Quantity | None = None,
     poisson: float | None = None,
-    e_star: float | None = None,
-    pressure: float | None = None,
-    penetration: float | None = None,
-    hardness: float | None = None,
+    young2: Quantity | None = None,
+    poisson2: float | None = None,
+    e_star: Quantity | None = None,
+    pressure: Quantity | None = None,
+    penetration: Quantity | None = None,
+    force: Quantity | None = None,
+    hardness: Quantity | None = None,
     conductivity: Conductivity | None = None,
     kernel: Kernel | None = None,
     boundary: Boundary | None = None,
-    layer_thickness: float | None = None,
+    layer_thickness: Quantity | None = None,
     layer_poisson: float | None = None,
     method: Method | None = None,
     border_level: int | None = None,
@@ -108,6 +119,8 @@ def solve(
         How a file is read, as for :func:`read`.
     spectrum, psd, psd_convention, like, heights_like, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, low_cut, amplitudes : optional
         A generated surface instead of ``heights``, as for :class:`Surface`.
+    shape, radius, angle, wavelength, wave_amplitude, add : optional
+        A shape, and the map of the other body, that are added to the surface, or a shape alone, as for :class:`Surface`.
     grid : int, (int, int) or str, optional
         Finest elements along x and y. Default: 32 per shortest wave, or the points of a map.
     young, poisson : float, optional
@@ -115,8 +128,11 @@ def solve(
         0.45, as in the paper.
     e_star : float, optional
         E* = E/(1-ν²) (Pa), instead of ``young`` and ``poisson``.
-    pressure, penetration : float
-        Mean pressure (Pa) or penetration (m). Give exactly one.
+    young2, poisson2 : float, optional
+        Young's modulus (Pa) and Poisson's ratio of the other body: 1/E* is the sum of (1-ν²)/E of both. Default: it is rigid.
+    pressure, penetration, force : float or str
+        Mean pressure (Pa), penetration (m), or force (N), which is the mean pressure times the area of the cell. Give exactly
+        one. These and all other lengths, pressures and forces may be text with a unit, such as ``"10kPa"``.
     hardness : float, optional
         Upper limit of the pressure (Pa), the usual first model of plastic contact. Default: no limit, an elastic contact.
     conductivity : float, (float, float) or str, optional
@@ -272,7 +288,8 @@ def surface_of(heights: Any, keys: dict[str, Any]) -> Problem:
         return Problem({**heights.keys(), **keys})
     if isinstance(heights, (str, os.PathLike)):
         return Problem({**keys, "heights": os.fspath(heights)})
-    for name in ("unit", "height_unit", "height_scale", "channel", "layout", "missing", "mask", *SURFACE_FILES, "psd_convention", "heights_like"):
+    of_files = ("unit", "height_unit", "height_scale", "channel", "layout", "missing", "mask")
+    for name in (*of_files, *SURFACE_FILES, "psd_convention", "heights_like"):
         if name in keys:
             raise ValueError(f"{name}: is for files; omit it, because the heights are an array (m)")
     array, sides, doubts = map_parts(heights)

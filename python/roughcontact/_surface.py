@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roughcontact import _core
-from roughcontact._keys import Grid, LengthUnit, Path, plain, with_absolute_files
+from roughcontact._keys import Grid, LengthUnit, Path, Quantity, Shape, plain, with_absolute_files
 
 _KEYS = (
     "cell",
@@ -31,6 +31,12 @@ _KEYS = (
     "roll_off",
     "low_cut",
     "amplitudes",
+    "shape",
+    "radius",
+    "angle",
+    "wavelength",
+    "wave_amplitude",
+    "add",
     "grid",
 )
 
@@ -77,8 +83,19 @@ class Surface:
         Number of waves per cell below which there are no waves.
     amplitudes : {"fixed", "random"}, default "fixed"
         Amplitudes exactly those of the spectrum, or Gaussian about it.
+    shape : {"sphere", "cylinder", "cone", "wave", "flat"}, optional
+        A shape whose highest point is at the centre of the cell. It is added to the waves, or is the whole surface if no
+        parameter of the waves is given. It then needs ``cell``.
+    radius : float or str, optional
+        Radius R (m) of the sphere, the paraboloid -r²/2R, or of the cylinder -x²/2R.
+    angle : float or str, optional
+        Angle of the flank of the cone to the plane (degrees).
+    wavelength, wave_amplitude : float or str, optional
+        Length and amplitude (m) of the wave along x.
+    add : path, optional
+        Height map of the other body, which is mirrored along x and added. It has the same grid and cell.
     grid : int, (int, int) or str, optional
-        Finest elements along x and y. Default: 32 per shortest wave.
+        Finest elements along x and y. Default: 32 per shortest wave, 512 for a shape.
     """
 
     __slots__ = ("_keys",)
@@ -86,18 +103,18 @@ class Surface:
     def __init__(
         self,
         *,
-        cell: float | None = None,
-        cell_y: float | None = None,
+        cell: Quantity | None = None,
+        cell_y: Quantity | None = None,
         spectrum: Path | None = None,
         psd: Path | None = None,
         psd_convention: Literal["plain", "fourier"] | None = None,
         like: Path | None = None,
         heights_like: Literal["gaussian", "map"] | None = None,
         unit: LengthUnit | None = None,
-        height_scale: float | None = None,
+        height_scale: Quantity | None = None,
         waves: int | None = None,
         hurst: float | None = None,
-        rms: float | None = None,
+        rms: Quantity | None = None,
         rms_slope: float | None = None,
         c0: float | None = None,
         seed: int | None = None,
@@ -105,6 +122,12 @@ class Surface:
         roll_off: float | None = None,
         low_cut: float | None = None,
         amplitudes: Literal["fixed", "random"] | None = None,
+        shape: Shape | None = None,
+        radius: Quantity | None = None,
+        angle: Quantity | None = None,
+        wavelength: Quantity | None = None,
+        wave_amplitude: Quantity | None = None,
+        add: Path | None = None,
         grid: Grid | None = None,
     ) -> None:
         given = locals()
@@ -145,18 +168,18 @@ def _surface_of(keys: dict[str, Any]) -> Surface:
 
 def surface(
     *,
-    cell: float | None = None,
-    cell_y: float | None = None,
+    cell: Quantity | None = None,
+    cell_y: Quantity | None = None,
     spectrum: Path | None = None,
     psd: Path | None = None,
     psd_convention: Literal["plain", "fourier"] | None = None,
     like: Path | None = None,
     heights_like: Literal["gaussian", "map"] | None = None,
     unit: LengthUnit | None = None,
-    height_scale: float | None = None,
+    height_scale: Quantity | None = None,
     waves: int | None = None,
     hurst: float | None = None,
-    rms: float | None = None,
+    rms: Quantity | None = None,
     rms_slope: float | None = None,
     c0: float | None = None,
     seed: int | None = None,
@@ -164,6 +187,12 @@ def surface(
     roll_off: float | None = None,
     low_cut: float | None = None,
     amplitudes: Literal["fixed", "random"] | None = None,
+    shape: Shape | None = None,
+    radius: Quantity | None = None,
+    angle: Quantity | None = None,
+    wavelength: Quantity | None = None,
+    wave_amplitude: Quantity | None = None,
+    add: Path | None = None,
     grid: Grid | None = None,
     threads: int | None = None,
 ) -> NDArray[np.float64]:

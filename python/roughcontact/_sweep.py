@@ -6,7 +6,7 @@ import json
 import operator
 import os
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, NamedTuple, Union
 
 import numpy as np
@@ -14,7 +14,19 @@ from numpy.typing import NDArray
 
 from roughcontact import _core
 from roughcontact._foreign import tell
-from roughcontact._keys import Boundary, Conductivity, Grid, Mask, Method, Missing, Path, plain, with_absolute_files
+from roughcontact._keys import (
+    Boundary,
+    Conductivity,
+    Grid,
+    Mask,
+    Method,
+    Missing,
+    Path,
+    Quantity,
+    Shape,
+    plain,
+    with_absolute_files,
+)
 from roughcontact._maps import Heights, equal_spacings, of_parts
 from roughcontact._result import Result
 from roughcontact._rows import FieldsAt, Found, Job, Workers, by_workers, here
@@ -28,10 +40,13 @@ Loads = Union[Sequence[float], NDArray[np.float64], str]
 #: Seeds one by one, or text such as ``"1..7"`` (both included).
 Seeds = Union[Iterable[int], str]
 
+#: Values of keys by their names, one by one, or as text of the command line: ``"5MPa,10MPa"``, ``"1e-5:1e-3:8"``.
+Vary = Mapping[str, Union[Sequence[Any], NDArray[np.float64], str]]
+
 #: Arguments that are no keys of a scene.
 _OPTIONS = frozenset(
     {
-        *("heights", "scene", "kernel", "pressures", "penetrations", "seeds"),
+        *("heights", "scene", "kernel", "pressures", "penetrations", "seeds", "vary"),
         *("out", "resume", "fields", "executor", "keep_results", "progress", "check", "strict"),
     }
 )
@@ -44,8 +59,9 @@ def sweep(
     pressures: Loads | None = None,
     penetrations: Loads | None = None,
     seeds: Seeds | None = None,
-    cell: float | None = None,
-    cell_y: float | None = None,
+    vary: Vary | None = None,
+    cell: Quantity | None = None,
+    cell_y: Quantity | None = None,
     spectrum: Path | None = None,
     psd: Path | None = None,
     psd_convention: Literal["plain", "fourier"] | None = None,
@@ -55,22 +71,31 @@ def sweep(
     mask: Mask | None = None,
     waves: int | None = None,
     hurst: float | None = None,
-    rms: float | None = None,
+    rms: Quantity | None = None,
     rms_slope: float | None = None,
     c0: float | None = None,
     truncation: Literal["disc", "square"] | None = None,
     roll_off: float | None = None,
     low_cut: float | None = None,
     amplitudes: Literal["fixed", "random"] | None = None,
+    shape: Shape | None = None,
+    radius: Quantity | None = None,
+    angle: Quantity | None = None,
+    wavelength: Quantity | None = None,
+    wave_amplitude: Quantity | None = None,
+    add: Path | None = None,
     grid: Grid | None = None,
-    young: float | None = None,
+    young: Quantity | None = None,
     poisson: float | None = None,
-    e_star: float | None = None,
-    hardness: float | None = None,
+    young2: Quantity | None = None,
+    poisson2: float | None = None,
+    e_star: Quantity | None = None,
+    force: Quantity | None = None,
+    hardness: Quantity | None = None,
     conductivity: Conductivity | None = None,
     kernel: Kernel | None = None,
     boundary: Boundary | None = None,
-    layer_thickness: float | None = None,
+    layer_thickness: Quantity | None = None,
     layer_poisson: float | None = None,
     method: Method | None = None,
     border_level: int | None = None,
@@ -97,9 +122,14 @@ def sweep(
         As for :func:`solve`.
     pressures, penetrations : sequence of float, or str
         Mean pressures (Pa) or penetrations (m), rising or falling. A range is text: ``"1e4:1e6:8"`` is geometric,
-        ``"1e-6:3e-5:8:linear"`` is linear. Give exactly one of the two.
+        ``"1e-6:3e-5:8:linear"`` is linear. Give exactly one of the two, or ``force``. Numbers in text may have units.
     seeds : iterable of int, or str, optional
         A random surface, or a twin, for each seed: ``range(1, 8)`` or ``"1..7"``. Default: the seed of the surface.
+    vary : mapping of str to a sequence or str, optional
+        Values of other keywords, such as ``{"hardness": ["5MPa", 1e7]}``. Each row has a column with the name of the
+        keyword. Several keywords give all combinations.
+    force : float or str, optional
+        Force (N) instead of the list of loads. A list of forces is ``vary={"force": [...]}``.
     threads : int, optional
         Worker threads of each solve. Default: all cores, or one with an executor.
     time_limit : float or str, optional
@@ -108,7 +138,7 @@ def sweep(
         A folder that keeps each row as soon as it is finished. Journal and table are those of ``rc sweep --out``, and each
         program continues the sweeps of the other.
     resume : bool, default False
-        Continue the sweep in ``out``, or start it.
+        Continue the sweep in ``out``, also with more loads, seeds or variations, or start it.
     fields : bool or path, default False
         True keeps a result folder for each row in ``out``. A path is a folder for a Zarr group of each row, ``0001.zarr`` and
         so on. The groups stay on the machines that solved them, and :attr:`Table.fields` says where.
@@ -144,12 +174,14 @@ def sweep(
     if executor is not None:
         keys.setdefault("threads", 1)
     progress = _progress(progress, executor is not None)
-    control, loads = _control(pressures, penetrations)
+    varied = _varied(vary)
+    has_force = "force" in keys or any(name == "force" for name, _ in varied)
+    control, loads = _control(pressures, penetrations, has_force)
     places = _places(out, fields, resume, kernel)
     if strict:
         keys["strict"] = True
     problem = _anywhere(heights, keys, scene, strict)
-    planned = _plan(problem, kernel, (control, loads, _seeds(seeds, heights)), places)
+    planned = _plan(problem, kernel, (control, loads, _seeds(seeds, heights), varied), places)
     kept = planned.kept()
     if kept and keep_results:
         planned.end()
@@ -179,16 +211,27 @@ def _progress(progress: ProgressOption, has_workers: bool) -> ProgressOption:
     return progress
 
 
-def _control(pressures: Loads | None, penetrations: Loads | None) -> tuple[str, list[float]]:
+def _varied(vary: Vary | None) -> list[tuple[str, Any]]:
+    if vary is None:
+        return []
+    return [(name, list_ if isinstance(list_, str) else [plain({name: value}).get(name) for value in list_]) for name, list_ in vary.items()]
+
+
+def _control(pressures: Loads | None, penetrations: Loads | None, has_force: bool) -> tuple[str, list[float]]:
+    if has_force and pressures is None and penetrations is None:
+        # The mean pressure follows from the cell.
+        return "pressure", []
+    if has_force:
+        raise ValueError("force: give it or a list of loads, not both")
     if (pressures is None) == (penetrations is None):
         raise ValueError("give exactly one of pressures (Pa) and penetrations (m)")
     name, loads = ("pressure", pressures) if penetrations is None else ("penetration", penetrations)
     if isinstance(loads, str):
-        return name, _core.loads(loads)
+        return name, _core.loads(loads, name == "penetration")
     values = [float(load) for load in np.asarray(loads, float).ravel()]
     if not values:
         raise ValueError(f"{name}s: no load is given")
-    return name, _core.loads(",".join(map(repr, values)))
+    return name, _core.loads(",".join(map(repr, values)), name == "penetration")
 
 
 def _seeds(seeds: Seeds | None, heights: Any) -> list[int] | None:
@@ -248,26 +291,35 @@ def _anywhere(heights: Any, keys: dict[str, Any], scene: Path | None, strict: bo
         heights = os.path.abspath(os.fspath(heights))
     elif heights is not None and not isinstance(heights, Surface):
         keys, array, sides, doubts = surface_of(heights, keys)
-        cell = keys.get("cell")
-        if sides is None and "cell_y" not in keys and isinstance(cell, (int, float)) and cell > 0.0 and array.size:
+        side = _length_of(keys.get("cell"))
+        if sides is None and "cell_y" not in keys and side is not None and array.size:
             # The rows take the same, but do not warn.
-            doubts += equal_spacings(array.shape, float(cell))[1]
+            doubts += equal_spacings(array.shape, side)[1]
         tell(doubts, strict, stacklevel=4)
         heights = of_parts(array, sides)
     return _Problem(heights, keys, scene)
 
 
+def _length_of(value: Any) -> float | None:
+    """A length with or without a unit; None for what is not one, which is refused later."""
+    try:
+        return None if value is None else _core.loads(str(value), True)[0]
+    except ValueError:
+        return None
+
+
 def _plan(
-    problem: _Problem, kernel: Kernel | None, lists: tuple[str, list[float], list[int] | None], places: _Places
+    problem: _Problem, kernel: Kernel | None, lists: tuple[str, list[float], list[int] | None, list[tuple[str, Any]]], places: _Places
 ) -> _core.Planned:
     keys, array, sides, _ = surface_of(problem.heights, problem.keys)
     if isinstance(kernel, str):
         keys = {**keys, "kernel": kernel}
-    control, loads, seeds = lists
+    control, loads, seeds, vary = lists
     wanted: _core.Wanted = {
         "penetrations": control == "penetration",
         "loads": loads,
         "seeds": seeds,
+        "vary": vary,
         "heights": array,
         "sides": sides,
         "scene": problem.scene,
@@ -288,8 +340,10 @@ def _jobs(
     options = {"scene": problem.scene, "kernel": kernel, "progress": progress}
     rows, jobs = planned.rows(), []
     for index in planned.todo():
-        seed, load = rows[index]
-        keys = {**problem.keys, **({} if seed is None else {"seed": seed}), control: load}
+        seed, load, varied = rows[index]
+        keys = {**problem.keys, **json.loads(varied), **({} if seed is None else {"seed": seed}), control: load}
+        # The load of the row is its mean pressure.
+        keys.pop("force", None)
         group = None if places.groups is None else os.path.join(places.groups, f"{index + 1:04}.zarr")
         jobs.append(Job(index, problem.heights, keys, options, keeps_result, planned.fields_folder(index), group))
     return jobs
@@ -317,9 +371,9 @@ class _Collected:
             self._refused[index] = found
             return
         self._planned.keep(index, found.cells)
-        seed, load = self._leading[index]
+        seed, load, varied = self._leading[index]
         first = {} if seed is None else {"seed": seed}
-        self._rows[index] = {**first, "control_value": load, **json.loads(found.cells)}
+        self._rows[index] = {**first, "control_value": load, **json.loads(varied), **json.loads(found.cells)}
         if self._results is not None and found.result is not None:
             self._results[index] = found.result
         if self._fields is not None:

@@ -18,8 +18,8 @@ import roughcontact as rc
 # A shell starts commands in the background with interrupts ignored, and their programs inherit this. The tests send some.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
-#: What a summary says of a run, not of the contact.
-OF_THE_RUN = {"wall_seconds", "peak_memory_bytes", "threads"}
+#: What a summary says of a run, not of the contact. An array has no file as its source.
+OF_THE_RUN = {"wall_seconds", "peak_memory_bytes", "threads", "source"}
 
 Command = Callable[..., "subprocess.CompletedProcess[str]"]
 

@@ -1,6 +1,7 @@
 """Heights of every kind, and input that is refused."""
 
 import pathlib
+import warnings
 
 import numpy as np
 import pytest
@@ -233,6 +234,26 @@ def test_axes_are_flipped_one_or_several(heights):
     assert np.array_equal(rc.prepare(heights, crop=(32, 16)).heights, rc.prepare(heights, crop="32x16").heights)
     with pytest.raises(ValueError, match="flip"):
         rc.prepare(heights, flip=("x", "w"))
+
+
+def test_spikes_go_and_other_points_stay(heights):
+    spiky = heights.copy()
+    spiky[20, 33] += 1e-3
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        despiked = rc.prepare(spiky, cell=0.01, despike=True).heights
+    assert [tuple(at) for at in np.argwhere(despiked != spiky)] == [(20, 33)]
+    assert abs(despiked[20, 33] - heights[20, 33]) < 0.5 * np.std(heights)
+    assert np.array_equal(rc.prepare(spiky, cell=0.01, despike=8.0).heights, despiked)
+    with pytest.warns(rc.InputWarning, match="far from all neighbours"):
+        assert np.array_equal(rc.prepare(spiky, cell=0.01, despike=False).heights, spiky)
+    with pytest.raises(ValueError, match="despike: must be 3 or more"):
+        rc.prepare(heights, cell=0.01, despike=1)
+
+
+def test_high_pass_is_what_low_pass_leaves(heights):
+    short, long = (rc.prepare(heights, cell=0.01, **{name: 2e-3}).heights for name in ("high_pass", "low_pass"))
+    assert abs(short + long - heights).max() < 1e-12 * np.std(heights)
 
 
 def test_arrays_with_names_and_units_of_other_packages_are_heights(heights, result):

@@ -50,7 +50,10 @@ fn assert_agrees(heights: &Field, found: &Solution<'_>, control: Control) {
     assert_close("penetration", found.info().penetration, uniform.info().penetration, allowed);
     assert_close("rms pressure", a.rms_pressure, b.rms_pressure, allowed);
     assert_close("mean gap", a.mean_gap, b.mean_gap, allowed);
-    assert_close("error bar of the gap", a.mean_gap_error, b.mean_gap_error, 1e-2);
+    if matches!(control, Control::MeanPressure(_)) {
+        // Under a given penetration it contains the summit, which is known of the surface and estimated of a map.
+        assert_close("error bar of the gap", a.mean_gap_error, b.mean_gap_error, 1e-2);
+    }
     assert_eq!(a.rms_pressure_error.is_none(), b.rms_pressure_error.is_none(), "contact reaches a border, or not");
     assert_close("energy", a.elastic_energy, b.elastic_energy, allowed);
     assert_close("stiffness", found.stiffness(), uniform.stiffness(), 3e-3);

@@ -7,6 +7,7 @@ use crate::help::help_flag;
 use crate::inspect::args::InspectArgs;
 use crate::manual::{CompletionsArgs, ManArgs};
 use crate::plot::PlotArgs;
+use crate::prepare::args::PrepareArgs;
 use crate::report::args::ReportArgs;
 use crate::solve::args::SolveArgs;
 use crate::surface::args::SurfaceArgs;
@@ -36,6 +37,8 @@ pub(crate) enum Command {
     Sweep(Box<SweepArgs>),
     /// Generate, convert or treat a surface
     Surface(SurfaceArgs),
+    /// The usual treatments of a measured map, for rc solve, with pictures of what they did
+    Prepare(Box<PrepareArgs>),
     /// Statistics of a surface or a result: rms, slopes, spectrum, distributions
     Inspect(InspectArgs),
     /// Pictures of a result or a surface

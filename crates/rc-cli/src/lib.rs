@@ -34,6 +34,7 @@ mod help;
 pub mod inspect;
 mod manual;
 mod plot;
+mod prepare;
 mod report;
 pub mod run;
 pub mod solve;
@@ -91,6 +92,7 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
         Command::Solve(args) => solve::run(args),
         Command::Sweep(args) => sweep::run(*args),
         Command::Surface(args) => surface::run(args),
+        Command::Prepare(args) => prepare::command::run(*args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Plot(args) => plot::run(&args),
         Command::Report(args) => report::run(&args),

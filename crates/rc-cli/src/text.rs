@@ -80,6 +80,7 @@ fn conductance(s: &Summary) -> String {
     let error = s.contact_conductance_error.map_or_else(String::new, |error| format!(" ± {}", digits(error, 1)));
     let of_bodies = s
         .conductance
+        .flatten()
         .map_or_else(String::new, |value| format!(", here {} (unit of the conductivity per m)", digits(value, 4)));
     format!("({}{error}) 1/m times the conductivity{of_bodies}", digits(value, 4))
 }

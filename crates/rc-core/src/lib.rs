@@ -66,6 +66,7 @@
 
 #[cfg(feature = "ndarray")]
 mod array;
+mod dimension;
 mod field;
 mod grid;
 mod heights;
@@ -81,6 +82,7 @@ pub mod testing;
 
 pub use glam::DVec2;
 
+pub use dimension::Dimension;
 pub use field::{Field, ShapeError};
 pub use grid::{Grid, GridError};
 pub use heights::{HeightField, HeightSource};

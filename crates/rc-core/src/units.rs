@@ -140,6 +140,14 @@ impl Elasticity {
         Ok(Self { e_star: positive("E*", e_star)? })
     }
 
+    /// Two elastic bodies in contact, this one and `other`: 1/E* is the sum of both 1/E*.
+    ///
+    /// # Errors
+    /// [`UnitError::NotPositive`] when the sum is out of range.
+    pub fn against(self, other: Self) -> Result<Self, UnitError> {
+        Self::from_e_star((self.e_star.recip() + other.e_star.recip()).recip())
+    }
+
     /// E* (Pa).
     #[must_use]
     pub fn e_star(self) -> f64 {

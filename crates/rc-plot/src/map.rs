@@ -55,12 +55,47 @@ pub enum Shade {
     },
 }
 
+/// Part of the points below, and above, the range of colours of heights.
+const BEYOND: f64 = 1e-3;
+
+/// Number of points from which the range of colours of a large field is taken.
+const SAMPLE: usize = 1 << 20;
+
 impl Shade {
+    /// The colours of heights, which `factor` converts to metres. They span 0.1 to 99.9 % of the points.
+    ///
+    /// A few spikes and pits do not take the colours of the rest.
+    #[must_use]
+    pub fn of_heights(field: &Field, factor: f64) -> Self {
+        Self::Values { range: range_of_most(field), palette: Palette::Viridis, factor, unit: "m" }
+    }
+
     /// Whether the map has a colour bar beside it.
     #[must_use]
     pub fn has_colour_bar(&self) -> bool {
         matches!(self, Self::Values { .. } | Self::Decades { .. })
     }
+}
+
+/// The range of the values of a field but the smallest and the largest in a thousand; the whole range of few values.
+///
+/// Values that are not finite do not count.
+#[must_use]
+pub fn range_of_most(field: &Field) -> (f64, f64) {
+    let n = field.values().len();
+    // Steps of the golden ratio do not follow any pattern of the map.
+    let at =
+        |i: usize| if n <= SAMPLE { i } else { ((i as f64 * 0.618_033_988_749_894_9).fract() * n as f64) as usize };
+    let sampled = (0..n.min(SAMPLE)).map(|i| field.values()[at(i)]);
+    let mut values: Vec<f64> = sampled.filter(|value| value.is_finite()).collect();
+    let beyond = (BEYOND * values.len() as f64) as usize;
+    if beyond == 0 {
+        return (field.min(), field.max());
+    }
+    let last = values.len() - 1;
+    let high = *values.select_nth_unstable_by(last - beyond, f64::total_cmp).1;
+    let low = *values.select_nth_unstable_by(beyond, f64::total_cmp).1;
+    if low < high { (low, high) } else { (field.min(), field.max()) }
 }
 
 /// Sizes, in units of the font size.
@@ -234,4 +269,33 @@ fn text<B: DrawingBackend>(
     let at = (at.0, at.1 + (0.14 * font) as i32);
     let style: TextStyle<'_> = (FONT, font).into_font().color(&BLACK).pos(Pos::new(anchor, VPos::Center));
     area.draw(&Text::new(text.to_owned(), at, style)).map_err(PictureError::new)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_colours_of_heights_leave_out_one_in_a_thousand_at_each_end() {
+        let grid = Grid::new(100, 50).expect("a grid");
+        let mut field = Field::new(grid, (0..5000).map(|i| f64::from((i * 7) % 5000)).collect()).expect("a field");
+        assert_eq!(range_of_most(&field), (5.0, 4994.0));
+        // Four spikes and missing points do not change the range by more than the points that they replace.
+        field.values_mut()[..4].fill(1e9);
+        field.values_mut()[10..20].fill(f64::NAN);
+        let (low, high) = range_of_most(&field);
+        assert!((0.0..=10.0).contains(&low) && (4980.0..5000.0).contains(&high), "from {low} to {high}");
+        let Shade::Values { range, factor, unit, .. } = Shade::of_heights(&field, 2.0) else { panic!("other colours") };
+        assert_eq!((range, factor, unit), ((low, high), 2.0, "m"));
+    }
+
+    #[test]
+    fn few_values_and_few_that_differ_have_all_colours() {
+        let grid = Grid::new(40, 30).expect("a grid");
+        let post = |i: usize| if i == 77 { 3.0 } else { 1.0 };
+        let field = Field::new(grid, (0..1200).map(post).collect()).expect("a field");
+        assert_eq!(range_of_most(&field), (1.0, 3.0));
+        let few = Field::new(Grid::new(2, 1).expect("a grid"), vec![-1.0, 4.0]).expect("a field");
+        assert_eq!(range_of_most(&few), (-1.0, 4.0));
+    }
 }

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyString};
 use rc_cli::scene::keys::{Scene, SurfaceKeys};
 use rc_cli::scene::{file, resolve};
+use rc_core::Dimension;
 use rc_sweep::{Loads, Seeds};
 use toml::{Table, Value};
 
@@ -18,12 +19,13 @@ pub(crate) fn known_keys() -> Vec<String> {
     file::known_keys().to_vec()
 }
 
-/// Loads of a sweep: `first:last:count`, or values with commas between them.
+/// Loads of a sweep: `first:last:count`, or values with commas between them. They are pressures or penetrations.
 ///
 /// The command line reads them in the same way.
 #[pyfunction]
-pub(crate) fn loads(text: &str) -> PyResult<Vec<f64>> {
-    text.parse().map(|Loads(values)| values).map_err(bad_input)
+pub(crate) fn loads(text: &str, penetrations: bool) -> PyResult<Vec<f64>> {
+    let dimension = if penetrations { Dimension::Length } else { Dimension::Pressure };
+    Loads::with_units(text, dimension).map(|Loads(values)| values).map_err(bad_input)
 }
 
 /// Seeds of a sweep: `1..7`, or a list with commas.
@@ -63,14 +65,15 @@ pub(crate) fn with_map(keys: &Bound<'_, PyDict>, path: Option<&Path>, holds_map:
     if holds_map {
         let kept = &mut scene.surface;
         if call.heights.is_none() && !call.generates() {
-            *kept = SurfaceKeys { cell: kept.cell, cell_y: kept.cell_y, grid: call.grid, ..call };
+            let added = kept.clone().added();
+            *kept = SurfaceKeys { grid: call.grid, ..call.over(added) };
         }
     }
     Ok(scene)
 }
 
 /// The value of a key; `None` for Python's `None`.
-fn value_of(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Value>> {
+pub(crate) fn value_of(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Value>> {
     if value.is_none() {
         return Ok(None);
     }
@@ -87,6 +90,7 @@ fn value_of(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Value>> {
         let instead = match key {
             "cell" => "; the other side is cell_y",
             "pressure" | "penetration" | "seed" => "; roughcontact.sweep solves for several",
+            "heights" | "add" => "; an array is the argument heights",
             _ => "",
         };
         let expected = match key {

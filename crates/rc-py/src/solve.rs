@@ -8,7 +8,8 @@ use pyo3::types::PyDict;
 use rc_cli::error::CliError;
 use rc_cli::run::threads;
 use rc_cli::scene::keys::{KernelName, RunKeys, Scene};
-use rc_cli::scene::surface::{LoadedSurface, Source};
+use rc_cli::scene::loaded::LoadedSurface;
+use rc_cli::scene::surface::Source;
 use rc_cli::solve::{CheckedScene, SolvedParts};
 use rc_cli::warnings::shown::refuse;
 use rc_core::{Kernel, Observer};
@@ -119,7 +120,7 @@ impl Prepared {
     /// Solves on the threads of the caller.
     fn solve(self, observer: &dyn Observer) -> Result<Parts, CliError> {
         let Self { scene, kernel, map, budget, is_strict, started } = self;
-        let is_callers = map.is_some();
+        let is_callers = map.is_some() && !scene.surface.is_sum();
         let surface = load(&scene, map)?;
         let own = kernel.as_ref().map(|kernel| kernel as &dyn Kernel);
         let named = if own.is_none() { Some(scene.contact.kernel()?) } else { None };
@@ -132,16 +133,16 @@ impl Prepared {
         let solved = scene.solve(problem, started, observer)?;
         let SolvedParts { solution, failure, flow, warnings, wall } = solved.into_parts();
         let solution = solution.into_owned();
-        // This is all that is kept of the caller's map.
+        // The heights of a map that is the caller's are not kept.
+        let own_map = if is_callers { None } else { surface.shared_map() };
         let height_and_slope = surface.height_and_slope(scene.contact.boundary);
         let waves = surface.wave_file().cloned();
-        let own_map = surface.map().filter(|_| !is_callers).map(|_| surface.shape.clone());
         let contact = scene.contact;
         let failure = failure.map(|failure| failure.to_string());
-        let surface = surface.keys;
-        let all_warnings = Vec::new();
+        let LoadedSurface { keys: surface, origin, .. } = surface;
         let parts = Parts {
             surface,
+            origin,
             waves,
             own_map,
             contact,
@@ -149,7 +150,7 @@ impl Prepared {
             failure,
             flow,
             warnings,
-            all_warnings,
+            all_warnings: Vec::new(),
             wall,
             height_and_slope,
         };
@@ -161,7 +162,11 @@ impl Prepared {
 fn load(scene: &CheckedScene, map: Option<HeightMap>) -> Result<LoadedSurface, CliError> {
     let expected = match &scene.surface.source {
         Source::File { expected, .. } => *expected,
-        Source::Random { .. } | Source::Waves { .. } | Source::Spectrum { .. } | Source::Twin { .. } => None,
+        Source::Random { .. }
+        | Source::Waves { .. }
+        | Source::Spectrum { .. }
+        | Source::Twin { .. }
+        | Source::Shape { .. } => None,
     };
     match map {
         Some(map) => scene.surface.of_map(Path::new("heights"), map, expected),
@@ -176,7 +181,8 @@ fn own_kernel(symbol: &Bound<'_, PyAny>, scene: &CheckedScene, map: Option<&Heig
             Source::Random { grid, .. }
             | Source::Waves { grid, .. }
             | Source::Spectrum { grid, .. }
-            | Source::Twin { grid, .. },
+            | Source::Twin { grid, .. }
+            | Source::Shape { grid },
             _,
         ) => *grid,
         (_, Some(map)) => map.heights.grid(),

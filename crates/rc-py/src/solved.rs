@@ -7,14 +7,14 @@ use std::time::Duration;
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
 use pyo3::prelude::*;
 use rc_cli::error::CliError;
+use rc_cli::scene::as_read::AsRead;
 use rc_cli::scene::keys::SurfaceKeys;
 use rc_cli::scene::resolve::ContactSetup;
-use rc_cli::scene::surface::Shape;
 use rc_cli::scene::wave_file::WaveFile;
 use rc_cli::solve::{MapHeights, ResultFiles, SolvedFlow};
 use rc_core::{Field, Grid};
 use rc_solver::{Solution, Status};
-use rc_sweep::{Summary, Warning};
+use rc_sweep::{MapOrigin, Summary, Warning};
 
 use crate::arrays::{self, Heights};
 use crate::errors::{bad_input, raised};
@@ -23,10 +23,12 @@ use crate::running::{Rest, on_threads, to_end};
 /// The result of a solve without borrows.
 pub(crate) struct Parts {
     pub(crate) surface: SurfaceKeys,
+    /// The file of the map, if it was read from one.
+    pub(crate) origin: Option<MapOrigin>,
     /// The file of waves that was solved, if the surface is from one.
     pub(crate) waves: Option<Arc<WaveFile>>,
-    /// The map that was read or generated; `None` for the caller's heights.
-    pub(crate) own_map: Option<Shape>,
+    /// The map that was solved, if it is not the caller's array.
+    pub(crate) own_map: Option<(Arc<Field>, AsRead)>,
     pub(crate) contact: ContactSetup,
     pub(crate) solution: Solution<'static>,
     /// Message about a solution that did not reach the tolerance.
@@ -72,12 +74,9 @@ struct Found {
 
 impl Parts {
     fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
-        let Self { surface, waves, own_map, contact, solution, flow, warnings, .. } = self;
-        let map = map.or(match own_map {
-            Some(Shape::Map { heights, as_read }) => Some(MapHeights::InCell { heights, as_read }),
-            _ => None,
-        });
-        ResultFiles { surface, map, waves: waves.as_deref(), contact, solution, flow: flow.as_ref(), warnings }
+        let Self { surface, waves, contact, solution, flow, warnings, origin, .. } = self;
+        let (waves, flow, origin) = (waves.as_deref(), flow.as_ref(), origin.as_ref());
+        ResultFiles { surface, map, waves, contact, solution, flow, warnings, origin }
     }
 
     pub(crate) fn with_all_warnings(mut self) -> Self {
@@ -240,9 +239,12 @@ impl Solved {
 
     /// Writes the result folder of `rc solve --out`.
     fn save(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-        let heights = self.map.as_ref().map(|map| map.array.bind(py).try_readonly()).transpose();
+        let own = self.found.parts.own_map.as_ref();
+        let callers = self.map.as_ref().filter(|_| own.is_none());
+        let heights = callers.map(|map| map.array.bind(py).try_readonly()).transpose();
         let heights = heights.map_err(|cause| bad_input(format_args!("heights: {cause}")))?;
-        let map = heights.as_ref().map(|heights| self.map_heights(heights)).transpose()?;
+        let callers = heights.as_ref().map(|heights| self.map_heights(heights)).transpose()?;
+        let map = own.map(|(heights, as_read)| MapHeights::InCell { heights, as_read }).or(callers);
         let written = to_end(py, self.found.threads, || {
             rc_sweep::files::check_folder(&folder)?;
             self.found.files(map).write(&folder, self.found.summary())

@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rc_cli::sweep::{MapMark, SweepLists, plan};
+use rc_cli::sweep::{MapMark, SweepLists, Variation, plan};
 use rc_sweep::{Cells, ControlKind, FileMark, Loads, Seeds, Shard, SweepPlan};
 
 use crate::arrays::{self, Heights};
@@ -25,6 +25,9 @@ pub(crate) struct Wanted<'py> {
     loads: Vec<f64>,
     #[pyo3(item)]
     seeds: Option<Vec<u64>>,
+    /// Keys that are varied.
+    #[pyo3(item)]
+    vary: Vec<(String, Values<'py>)>,
     /// Heights (m), row by row.
     #[pyo3(item)]
     heights: Option<Heights<'py>>,
@@ -45,6 +48,25 @@ pub(crate) struct Wanted<'py> {
     fields: bool,
 }
 
+/// The values of a varied key: one by one, or as text of the command line.
+#[derive(FromPyObject)]
+enum Values<'py> {
+    Text(String),
+    Each(Vec<Bound<'py, PyAny>>),
+}
+
+/// The variation of a key.
+fn variation(key: &str, values: &Values<'_>) -> PyResult<Variation> {
+    let found = match values {
+        Values::Text(list) => format!("{key}={list}").parse(),
+        Values::Each(values) => {
+            let of = |value: &Bound<'_, PyAny>| scene::value_of(key, value).transpose();
+            Variation::new(key.to_owned(), values.iter().filter_map(of).collect::<PyResult<_>>()?)
+        }
+    };
+    found.map_err(|message| bad_input(format_args!("vary: {message}")))
+}
+
 /// The plan of a sweep and the rows that are finished.
 #[pyclass(frozen, module = "roughcontact._core")]
 pub(crate) struct Planned {
@@ -56,10 +78,11 @@ pub(crate) struct Planned {
 /// Checks a sweep, and starts or continues its journal.
 #[pyfunction]
 pub(crate) fn plan_sweep(py: Python<'_>, keys: &Bound<'_, PyDict>, wanted: Wanted<'_>) -> PyResult<Planned> {
-    let Wanted { penetrations, loads, seeds, heights, sides, scene: file, folder, resume, fields } = wanted;
+    let Wanted { penetrations, loads, seeds, vary, heights, sides, scene: file, folder, resume, fields } = wanted;
     let scene = scene::with_map(keys, file.as_deref(), heights.is_some())?;
     let control = if penetrations { ControlKind::Penetration } else { ControlKind::Pressure };
-    let lists = SweepLists { control, loads: Loads(loads), seeds: seeds.map(Seeds) };
+    let vary = vary.iter().map(|(key, values)| variation(key, values)).collect::<PyResult<_>>()?;
+    let lists = SweepLists { control, loads: Loads(loads), seeds: seeds.map(Seeds), vary };
     let map = heights.as_ref().map(|heights| mark(py, heights, folder.is_some())).transpose()?;
     let points = heights.as_ref().map(arrays::grid_of).transpose()?.map(|grid| [grid.nx(), grid.ny()]);
     let map = map.zip(points).map(|(mark, points)| MapMark { sides, points, mark });
@@ -91,10 +114,15 @@ impl Planned {
 
 #[pymethods]
 impl Planned {
-    /// Seed and load of each row.
-    fn rows(&self) -> Vec<(Option<u64>, f64)> {
-        let row = |index| self.plan.row(index);
-        (0..self.n_rows()).map(row).map(|row| (self.plan.surfaces[row.surface].seed, row.load)).collect()
+    /// Seed, load, and varied keys as JSON of each row.
+    fn rows(&self) -> Vec<(Option<u64>, f64, String)> {
+        let row = |index| {
+            let row = self.plan.row(index);
+            let surface = &self.plan.surfaces[row.surface];
+            let varied: Cells = surface.varied.iter().cloned().collect();
+            (surface.seed, row.load, serde_json::Value::Object(varied).to_string())
+        };
+        (0..self.n_rows()).map(row).collect()
     }
 
     /// Description of a row for messages.

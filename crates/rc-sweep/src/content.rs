@@ -179,6 +179,12 @@ impl Content {
         Ok(content)
     }
 
+    /// The journal as text.
+    pub(crate) fn text(&self) -> String {
+        let lines = self.rows.iter().map(|(&row, cells)| row_line(row, cells));
+        std::iter::once(self.header.to_line()).chain(lines).collect()
+    }
+
     /// Reads a complete line with a row of this sweep.
     fn parse(&self, line: &[u8]) -> Option<Line> {
         let whole = line.strip_suffix(b"\n")?;

@@ -36,7 +36,7 @@ impl FileError {
 }
 
 /// First part of the names of temporary files. A process that is killed may leave such files.
-const PARTIAL: &str = ".rc-partial-";
+pub(crate) const PARTIAL: &str = ".rc-partial-";
 
 /// First part of the names of replaced files, inside the hidden folder.
 const EARLIER: &str = "earlier-";

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use crate::content::{Cells, Content, Header, SweepRows, row_line};
 use crate::error::SweepError;
+use crate::extended;
 use crate::files::{self, FileError};
 use crate::folder::{FILES, JOURNAL_FILE, ROWS_FOLDER, TABLE_FILE};
 use crate::lock::Lock;
@@ -27,14 +28,14 @@ pub(crate) struct Journal {
     made_folder: bool,
     /// Reason why a row could not be stored. No row is stored after that.
     failure: Option<SweepError>,
-    /// Lock that is held while this process may write.
-    _lock: Lock,
+    /// Locks that are held while this process may write. One is that of a journal which this one replaces.
+    _locks: Vec<Lock>,
 }
 
 impl Journal {
     /// Starts the journal of a new sweep in `folder`, or continues a sweep with `resume`.
     ///
-    /// A sweep to continue must have the same first line.
+    /// A sweep to continue must have the same first line, or lack some surfaces or loads.
     ///
     /// # Errors
     /// When the folder contains something else, or cannot be written.
@@ -78,7 +79,7 @@ impl Journal {
             rows: SweepRows::new(),
             made_folder,
             failure: None,
-            _lock: lock,
+            _locks: vec![lock],
         })
     }
 
@@ -89,18 +90,37 @@ impl Journal {
         // The lock is taken before reading, because another process may still be writing.
         let lock = Lock::take(&file, folder)?;
         let content = Content::read(folder)?;
+        if let Some(places) = extended::places(&content.header, header) {
+            return Self::extend(folder, (content, lock), header, &places);
+        }
         header.check_same(&content.header, folder)?;
         file.set_len(content.whole).map_err(fail)?;
-        Ok(Self {
-            path,
-            file,
-            length: content.whole,
-            header: content.header,
-            rows: content.rows,
-            made_folder: false,
-            failure: None,
-            _lock: lock,
-        })
+        Ok(Self::with_content(path, (file, vec![lock]), content))
+    }
+
+    /// Replaces a journal by that of a sweep with more rows. Its finished rows get these places.
+    fn extend(
+        folder: &Path,
+        (content, lock): (Content, Lock),
+        header: &Header,
+        places: &[usize],
+    ) -> Result<Self, SweepError> {
+        let path = folder.join(JOURNAL_FILE);
+        let fail = |cause: io::Error| SweepError::from(FileError::write(&path, cause));
+        let content = extended::moved(content, header.clone(), places);
+        let mut new = files::temporary_in(folder).map_err(fail)?;
+        new.write_all(content.text().as_bytes()).and_then(|()| new.as_file().sync_all()).map_err(fail)?;
+        let other_lock = Lock::take(new.as_file(), folder)?;
+        let fields = extended::MovedFields::hide(folder, places)?;
+        new.persist(&path).map_err(|error| fail(error.error))?;
+        fields.show()?;
+        let file = OpenOptions::new().append(true).open(&path).map_err(fail)?;
+        Ok(Self::with_content(path, (file, vec![lock, other_lock]), content))
+    }
+
+    fn with_content(path: PathBuf, (file, locks): (File, Vec<Lock>), content: Content) -> Self {
+        let Content { header, rows, whole } = content;
+        Self { path, file, length: whole, header, rows, made_folder: false, failure: None, _locks: locks }
     }
 
     /// Stores a row.

@@ -2,6 +2,8 @@
 
 use std::str::FromStr;
 
+use rc_core::Dimension;
+
 /// Maximum number of values in a list. A larger number means that a number was mistyped.
 const MOST: usize = 100_000;
 
@@ -16,14 +18,22 @@ enum Spacing {
     Linear,
 }
 
-impl FromStr for Loads {
-    type Err = String;
+/// A reader of one number.
+type Number<'a> = &'a dyn Fn(&str) -> Result<f64, String>;
 
-    /// Reads a geometric range `first:last:count`, a range `first:last:count:linear`, or values with commas between
-    /// them.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let values =
-            if text.contains(':') { range(text)? } else { text.split(',').map(load).collect::<Result<_, _>>()? };
+impl Loads {
+    /// Reads loads that may have units, such as `10kPa:1MPa:8`.
+    ///
+    /// The forms are those of [`Loads::from_str`].
+    ///
+    /// # Errors
+    /// One line that says what is wrong and what would be right.
+    pub fn with_units(text: &str, dimension: Dimension) -> Result<Self, String> {
+        Self::read(text, &|number| checked(number, dimension.parse(number)?))
+    }
+
+    fn read(text: &str, number: Number<'_>) -> Result<Self, String> {
+        let values = values(text, number)?;
         let rising = values.windows(2).all(|pair| pair[0] < pair[1]);
         let falling = values.windows(2).all(|pair| pair[0] > pair[1]);
         if rising || falling {
@@ -34,7 +44,21 @@ impl FromStr for Loads {
     }
 }
 
-fn range(text: &str) -> Result<Vec<f64>, String> {
+impl FromStr for Loads {
+    type Err = String;
+
+    /// Reads a geometric range `first:last:count`, a range `first:last:count:linear`, or values with commas between
+    /// them.
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::read(text, &|number| checked(number, number.trim().parse().unwrap_or(f64::NAN)))
+    }
+}
+
+fn values(text: &str, number: Number<'_>) -> Result<Vec<f64>, String> {
+    if text.contains(':') { range(text, number) } else { text.split(',').map(number).collect() }
+}
+
+fn range(text: &str, number: Number<'_>) -> Result<Vec<f64>, String> {
     let shape = || {
         format!("a range is first:last:count, with :linear if it is not geometric, for example 1e4:1e6:8, not '{text}'")
     };
@@ -48,7 +72,7 @@ fn range(text: &str) -> Result<Vec<f64>, String> {
     if !(2..=MOST).contains(&count) {
         return Err(format!("a range has from 2 to {MOST} values, not {count}"));
     }
-    Ok(spaced(load(first)?, load(last)?, count, spacing))
+    Ok(spaced(number(first)?, number(last)?, count, spacing))
 }
 
 /// A range of `count` ≥ 2 values.
@@ -71,10 +95,11 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.14e}").parse().unwrap_or(value)
 }
 
-fn load(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
-        _ => Err(format!("each load is a positive, finite number, not '{text}'")),
+fn checked(text: &str, value: f64) -> Result<f64, String> {
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(format!("each load is a positive, finite number, not '{text}'"))
     }
 }
 
@@ -133,6 +158,17 @@ mod tests {
         assert_eq!("8:1:4:geometric".parse(), Ok(Loads(vec![8.0, 4.0, 2.0, 1.0])));
         assert_eq!("1e5, 2e5,7e5".parse(), Ok(Loads(vec![1e5, 2e5, 7e5])));
         assert_eq!("3".parse(), Ok(Loads(vec![3.0])));
+    }
+
+    #[test]
+    fn loads_may_have_units() {
+        let pressures = Loads::with_units("10kPa:1MPa:3", Dimension::Pressure);
+        assert_eq!(pressures, Ok(Loads(vec![1e4, 1e5, 1e6])));
+        assert_eq!(Loads::with_units("1um, 2e-6", Dimension::Length), Ok(Loads(vec![1e-6, 2e-6])));
+        for (text, expected) in [("1um", "which is a length"), ("1,x", "must be a pressure"), ("0Pa", "positive")] {
+            let error = Loads::with_units(text, Dimension::Pressure).expect_err(text);
+            assert!(error.contains(expected), "'{text}': {error}");
+        }
     }
 
     #[test]

@@ -59,6 +59,11 @@ impl From<Control> for ControlKind {
 pub struct PlannedSurface {
     /// Name of the scene of the surface. It is empty if there is only one scene.
     pub scene: String,
+    /// Values of the settings that the sweep varies, by their names.
+    ///
+    /// Each row has them as columns.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub varied: Vec<(String, Value)>,
     /// Seed of a random surface.
     #[serde(skip)]
     pub seed: Option<u64>,
@@ -72,6 +77,9 @@ pub struct PlannedSurface {
     pub loads: Vec<f64>,
     /// The height map, if the surface is one. Its content determines the rows, but its path does not.
     pub map: Option<FileMark>,
+    /// The height map of the other body, if it is added.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub added: Option<FileMark>,
 }
 
 /// Length and checksum, which identify a file.
@@ -171,12 +179,12 @@ impl SweepPlan {
     /// Distributes the rows to shards by their expected processor time in seconds.
     ///
     /// The longest row comes first, and each row goes to the shard with the lowest total. `seconds` is called for the
-    /// loads of the first surface of each scene, and applies to all surfaces of the scene. Where it returns `None`, the
-    /// mean is used.
+    /// loads of the first surface of each scene with the same varied settings, and applies to all these surfaces. Where
+    /// it returns `None`, the mean is used.
     #[must_use]
     pub fn dealt_by(mut self, mut seconds: impl FnMut(&SweepRow) -> Option<f64>) -> Self {
         let (mut scenes, mut first) = (Vec::new(), 0);
-        for surfaces in self.surfaces.chunk_by(|a, b| a.scene == b.scene) {
+        for surfaces in self.surfaces.chunk_by(|a, b| a.scene == b.scene && a.varied == b.varied) {
             let loads = surfaces.first().map_or(&[][..], |surface| &surface.loads);
             let row = |(i, &load)| SweepRow { index: first * loads.len() + i, surface: first, load };
             scenes.push((surfaces.len(), loads.iter().enumerate().map(|row_at| seconds(&row(row_at))).collect()));
@@ -215,7 +223,7 @@ impl SweepPlan {
         SweepRow { index, surface, load: self.surfaces[surface].loads[index % loads] }
     }
 
-    /// Name of a row in a message: `row 3 (seed 1, pressure 1e5)`.
+    /// Name of a row in a message: `row 3 (hardness 5e6, seed 1, pressure 1e5)`.
     ///
     /// It counts from 1, as in the table.
     ///
@@ -223,11 +231,14 @@ impl SweepPlan {
     /// When there is no such row.
     #[must_use]
     pub fn describe(&self, row: &SweepRow) -> String {
-        let seed = self.surfaces[row.surface].seed.map_or_else(String::new, |seed| format!("seed {seed}, "));
-        format!("row {} ({seed}{} {:e})", row.index + 1, self.control.key(), row.load)
+        let PlannedSurface { varied, seed, .. } = &self.surfaces[row.surface];
+        let mut words: Vec<String> = varied.iter().map(|(key, value)| format!("{key} {value}")).collect();
+        words.extend(seed.map(|seed| format!("seed {seed}")));
+        words.push(format!("{} {:e}", self.control.key(), row.load));
+        format!("row {} ({})", row.index + 1, words.join(", "))
     }
 
-    /// The first columns of a row: scene if there are several, seed, load.
+    /// The first columns of a row: scene if there are several, seed, load, varied settings.
     pub(crate) fn leading_cells(&self, row: &SweepRow) -> Cells {
         let surface = &self.surfaces[row.surface];
         let mut cells = Map::new();
@@ -236,6 +247,7 @@ impl SweepPlan {
         }
         cells.insert("seed".into(), json!(surface.seed));
         cells.insert("control_value".into(), json!(row.load));
+        cells.extend(surface.varied.iter().cloned());
         cells
     }
 

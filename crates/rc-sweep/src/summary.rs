@@ -4,12 +4,13 @@ use std::time::Duration;
 
 use rc_core::Units;
 use rc_solver::{ErrorBound, Solution};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use crate::content::Cells;
 use crate::leakage::LeakageSummary;
 use crate::memory;
+use crate::origin::MapOrigin;
 use crate::plan::ControlKind;
 use crate::warning::Warning;
 
@@ -102,8 +103,8 @@ pub struct Summary {
     /// Conductance of the nominal area for the given conductivities, in their unit per metre.
     ///
     /// It exists only with conductivities, and is null in full contact.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub conductance: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
+    pub conductance: Option<Option<f64>>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
     /// rms height about the mean (m).
@@ -147,6 +148,9 @@ pub struct Summary {
     /// Flow through the gap, if it was requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub leakage: Option<LeakageSummary>,
+    /// Origin of the heights, if they are from a file of a map.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<MapOrigin>,
     /// Doubts about the input and the result.
     ///
     /// Summaries of older versions have none.
@@ -189,6 +193,12 @@ fn tolerances(bound: ErrorBound) -> [Option<f64>; 2] {
         ErrorBound::Relative(value) => [Some(value), None],
         ErrorBound::Energy(value) => [None, Some(value)],
     }
+}
+
+/// A value that is there, which may be null.
+#[expect(clippy::option_option, reason = "a null is not a missing key")]
+fn as_given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<f64>>, D::Error> {
+    Option::deserialize(deserializer).map(Some)
 }
 
 /// Conductance for unit conductivity and its error (1/m). There is none in full contact.
@@ -239,7 +249,7 @@ impl Summary {
             contact_stiffness: Some(stiffness).filter(|value| value.is_finite()),
             contact_conductance: conductance,
             contact_conductance_error: error_of_conductance,
-            conductance: conductance.zip(context.conductivity).map(|(per_unit, of_bodies)| per_unit * of_bodies),
+            conductance: context.conductivity.map(|of_bodies| conductance.map(|per_unit| per_unit * of_bodies)),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,
@@ -256,6 +266,7 @@ impl Summary {
             iterations: info.fine_iterations(),
             operator_applications: info.fine_operator_applications(),
             leakage: None,
+            source: None,
             warnings: Vec::new(),
             wall_seconds: context.wall.as_secs_f64(),
             peak_memory_bytes: memory::peak(),
@@ -266,7 +277,7 @@ impl Summary {
 
     /// The summary as the cells of a row.
     ///
-    /// The cell `warnings` has the codes of the warnings. The cells of a flow are `permeance_x`, `permeance_y`, their
+    /// The cell `warnings` has the codes of the warnings. There is no `source`. The cells of a flow are `permeance_x`, `permeance_y`, their
     /// errors (all in m³), and `percolates` (along x and along y).
     ///
     /// # Panics
@@ -281,6 +292,7 @@ impl Summary {
             }
         }
         cells.insert("warnings".to_owned(), codes.into());
+        cells.shift_remove("source");
         if let (Some(leakage), Some(_)) = (&self.leakage, cells.shift_remove("leakage")) {
             cells.extend(leakage.cells().map(|(column, value)| (column.to_owned(), value)));
         }

@@ -26,7 +26,8 @@ pub struct Sweep {
 impl Sweep {
     /// Starts the shard of a new sweep in `folder`, or continues a sweep with `resume`.
     ///
-    /// A sweep to continue must be the same. Its rows are those that were dealt to it when it was started.
+    /// A sweep to continue must be the same, or a whole sweep without some of the surfaces and loads. Its finished rows
+    /// are kept. The rows of a shard are those that were dealt to it when it was started.
     ///
     /// # Errors
     /// [`SweepError`] when the shard has no rows, when the folder contains something else, or when it cannot be

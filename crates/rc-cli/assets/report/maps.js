@@ -55,10 +55,11 @@ class SharedView {
   }
 }
 
-/** One map. `reading` makes text of a value, `ends` those at the ends of the colours; the end of these is `movable`. */
+/** One map. `reading` makes text of a value, `ends` those at the ends of the colours, which are the values of `span`; the end of these is `movable`. */
 class FieldMap {
-  constructor({ title, field, colours, view, sides, reading, ends, movable = true }) {
-    Object.assign(this, { field, view, side: sides[0], shape: Math.min(4, Math.max(0.25, sides[1] / sides[0])), reading, colours: colourTable(colours), low: movable ? field.low : 0, top: field.max });
+  constructor({ title, field, colours, span, view, sides, reading, ends, movable = true }) {
+    const [low, most] = span ?? [movable ? field.low : 0, field.max];
+    Object.assign(this, { field, view, side: sides[0], shape: Math.min(4, Math.max(0.25, sides[1] / sides[0])), reading, colours: colourTable(colours), low, top: most });
     this.bitmap = make("canvas", { width: field.nx, height: field.ny });
     this.canvas = make("canvas");
     this.value = make("span", { class: "quiet" });
@@ -66,12 +67,13 @@ class FieldMap {
     this.box.style.aspectRatio = 1 / this.shape;
     const bar = make("div", { class: "bar" });
     bar.style.background = `linear-gradient(to right, ${colours.map((c) => `rgb(${c.join(" ")})`).join(", ")})`;
-    const [least, greatest] = ends(this.low, this.top);
-    const end = make("span", {}, greatest);
+    const greatest = () => (this.top < field.max ? "≥ " : "") + ends(this.low, this.top)[1];
+    const [least] = ends(this.low, this.top);
+    const end = make("span", {}, greatest());
     const slider = make("input", { type: "range", min: 5, max: 100, value: 100, "aria-label": `end of the colours of ${title}` });
     slider.addEventListener("input", () => {
-      this.top = this.low + ((field.max - this.low) * slider.value) / 100;
-      end.textContent = (slider.value < 100 ? "≥ " : "") + ends(this.low, this.top)[1];
+      this.top = low + ((most - low) * slider.value) / 100;
+      end.textContent = greatest();
       this.colour();
       this.paint();
     });

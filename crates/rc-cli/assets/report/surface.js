@@ -1,12 +1,12 @@
 // The page of a surface without a contact.
 
 /** The height map. */
-function heightMap({ sides, heights, lowest, note }) {
+function heightMap({ sides, heights, span, lowest, note }) {
   const field = new EmbeddedField(heights);
   const view = new SharedView([0.5, 0.5], Math.min(1, 8 / Math.max(heights.nx, heights.ny)));
   const height = (value) => si(value + lowest, "m");
   const map = new FieldMap({
-    title: "Height", field, colours: heights.colours, view, sides, reading: height, ends: (low, high) => [height(low), height(high)],
+    title: "Height", field, colours: heights.colours, span, view, sides, reading: height, ends: (low, high) => [height(low), height(high)],
   });
   const place = make("span", {});
   const controls = make("div", { class: "controls" },

@@ -1,5 +1,6 @@
 //! Files of results, and reading them back.
 
+pub(crate) mod beside;
 pub mod checkpoint;
 pub(crate) mod coarsen;
 pub(crate) mod flow;

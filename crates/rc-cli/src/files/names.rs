@@ -6,6 +6,9 @@ pub(crate) const HEIGHTS_FILE: &str = "heights.npy";
 /// The statistics of a surface.
 pub(crate) const RECORD_FILE: &str = "surface.json";
 
+/// The steps of `rc prepare`.
+pub(crate) const PREPARE_FILE: &str = "prepare.json";
+
 /// The scene.
 pub(crate) const SCENE_FILE: &str = "scene.toml";
 

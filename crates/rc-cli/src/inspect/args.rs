@@ -7,6 +7,7 @@ use rc_heights::{Layout, LengthUnit, Mask};
 use rc_sweep::memory::ByteSize;
 
 use crate::scene::keys::{RunKeys, Scene, SurfaceKeys};
+use crate::scene::quantity::length;
 use crate::scene::values::{GridSpec, Marks};
 
 /// Arguments of `rc inspect`.
@@ -28,10 +29,10 @@ pub(crate) struct InspectArgs {
     /// Side λ of the cell, along x (m) [default: the file's; 0.01 if it has none]
     ///
     /// A result has its cell in scene.toml, and takes no --cell.
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
     pub(crate) cell: Option<f64>,
     /// Side of the cell along y (m) [default: that in the file, or equal spacings]
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
     pub(crate) cell_y: Option<f64>,
     /// Unit of lengths in a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]
     #[arg(long, value_name = "UNIT")]
@@ -42,7 +43,7 @@ pub(crate) struct InspectArgs {
     /// Height (m) of the value 1 in a file without a unit; overrides --unit
     ///
     /// In an image, 1 is one level of grey.
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
     pub(crate) height_scale: Option<f64>,
     /// Values that mark missing points, in the numbers of the file: -9999, or -9999,1e30
     #[arg(long, value_name = "VALUE[,VALUE]", allow_hyphen_values = true)]

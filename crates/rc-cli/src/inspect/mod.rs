@@ -24,7 +24,7 @@ use crate::files::names::{SCENE_FILE, SUMMARY_FILE};
 use crate::files::result::ResultFolder;
 use crate::scene::heights::CellOfMap;
 use crate::scene::keys::{RunKeys, Scene, SurfaceKeys};
-use crate::scene::surface::LoadedSurface;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::values::GridSpec;
 use crate::scene::{file, heights, resolve};
 use crate::text::{solved, written};
@@ -124,7 +124,7 @@ pub fn height_map(name: &Path, map: HeightMap, sides: [Option<f64>; 2]) -> Resul
 /// [`CliError::Input`] when the grid is too coarse for the waves.
 pub fn surface(surface: &LoadedSurface, side: f64) -> Result<String, CliError> {
     let heights = surface.heights()?;
-    let record = SurfaceRecord::of(&heights, side, surface.moments());
+    let record = SurfaceRecord::of(&heights, side, surface.moments(&heights));
     let warnings = [&surface.warnings[..], &record.shape().warnings()].concat();
     Ok(to_json(&SurfaceRecord { warnings, ..record }))
 }
@@ -179,7 +179,7 @@ impl Inspected {
         let notes = map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
         let cell = PeriodicCell::rectangle(cell, cell_y.unwrap_or(cell)).map_err(CliError::input)?;
         let is_complete = map.missing() == 0;
-        let (heights, _) = heights::in_cell(path, map.heights, cell)?;
+        let (heights, _) = heights::divided(heights::in_cell(path, map.heights, cell)?, cell.side());
         let record = if is_complete {
             SurfaceRecord::of(&heights, cell.side(), moments_of_grid(&heights))
         } else {
@@ -201,7 +201,7 @@ pub(crate) fn of_surface(path: &Path, over: Scene) -> Result<Inspected, CliError
     let surface = setup.load()?;
     Budget::new(scene.run.memory_limit).check_grid("the surface", surface.grid)?;
     let heights = surface.heights()?.into_owned();
-    let record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments());
+    let record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments(&heights));
     let warnings = [surface.warnings, record.shape().warnings()].concat();
     Ok(Inspected { heights, record: SurfaceRecord { notes: surface.notes, warnings, ..record } })
 }
@@ -269,7 +269,7 @@ fn inspect_waves(args: &InspectArgs) -> Result<String, CliError> {
     }
     Budget::new(None).check_grid("the surface", surface.grid)?;
     let heights = surface.heights()?.into_owned();
-    let mut record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments());
+    let mut record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments(&heights));
     if args.cell.is_none() {
         record.warnings.extend(warnings::surface::assumed(&[assumed_side(side)]));
     }

@@ -9,8 +9,7 @@ use rc_core::Field;
 use super::record::SurfaceRecord;
 use rc_core::quantity::{Scale, digits};
 use rc_plot::{
-    Area, LinePlot, LineStyle, Map, MapPicture, Palette, Picture, PictureError, Series, Shade, draw_lines, save_png,
-    save_svg,
+    Area, LinePlot, LineStyle, Map, MapPicture, Picture, PictureError, Series, Shade, draw_lines, save_png, save_svg,
 };
 use rc_sweep::files::{FileError, Staged};
 
@@ -37,8 +36,7 @@ pub(crate) fn write(folder: &Path, heights: &Field, record: &SurfaceRecord) -> R
 
 /// Adds the pictures to `staged`.
 fn add(staged: &mut Staged, heights: &Field, record: &SurfaceRecord) -> Result<(), FileError> {
-    let (range, factor) = ((heights.min(), heights.max()), record.cell);
-    let shade = Shade::Values { range, palette: Palette::Viridis, factor, unit: "m" };
+    let shade = Shade::of_heights(heights, record.cell);
     let title = if record.missing > 0 { "Height (red: missing)" } else { "Height" };
     let map = MapPicture(Map { title, field: heights, shade, side: record.cell });
     staged.add("surface.png", |path| save_png(&map, path))?;

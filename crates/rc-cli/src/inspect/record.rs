@@ -3,7 +3,7 @@
 use rc_core::{Field, Histogram};
 use rc_fractal::{HurstFit, Moments, SpectrumBin, fit_hurst, radial_spectrum};
 use rc_heights::{AreaParameters, BorderStep, Effect, MapStatistics};
-use rc_sweep::Warning;
+use rc_sweep::{MapOrigin, Warning};
 use serde::Serialize;
 
 use crate::warnings::surface::Shape;
@@ -58,6 +58,9 @@ pub(crate) struct SurfaceRecord {
     /// Measured map before its treatments and after each of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) treatments: Vec<TreatmentRow>,
+    /// Origin of the heights, if they are from a file of a map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) source: Option<MapOrigin>,
     /// What the reader of the file did, one line each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) notes: Vec<String>,
@@ -111,6 +114,8 @@ impl HurstRow {
 pub(crate) struct TreatmentRow {
     /// Name of the treatment.
     pub(crate) treatment: String,
+    /// Number of points that were cut, replaced, filled or moved.
+    pub(crate) changed: usize,
     /// Points along x and y.
     pub(crate) grid: [usize; 2],
     /// Number of missing points.
@@ -125,9 +130,9 @@ pub(crate) struct TreatmentRow {
 
 impl From<&Effect> for TreatmentRow {
     fn from(effect: &Effect) -> Self {
-        let Effect { missing, rms_height, rms_slope, border_step, .. } = *effect;
+        let Effect { changed, missing, rms_height, rms_slope, border_step, .. } = *effect;
         let grid = [effect.grid.nx(), effect.grid.ny()];
-        Self { treatment: effect.treatment.clone(), grid, missing, rms_height, rms_slope, border_step }
+        Self { treatment: effect.treatment.clone(), changed, grid, missing, rms_height, rms_slope, border_step }
     }
 }
 
@@ -209,6 +214,7 @@ impl SurfaceRecord {
             hurst_fit: None,
             spectrum: Vec::new(),
             treatments: Vec::new(),
+            source: None,
             notes: Vec::new(),
             warnings: Vec::new(),
             channels: Vec::new(),

@@ -85,20 +85,35 @@ fn not_known() -> String {
 }
 
 /// One line for each state of a treated map.
-fn treatments(rows: &[TreatmentRow]) -> String {
+pub(crate) fn treatments(rows: &[TreatmentRow]) -> String {
     if rows.is_empty() {
         return String::new();
     }
     let name = "treatment";
     let width = rows.iter().map(|row| row.treatment.chars().count()).fold(name.len(), usize::max) + 2;
-    let heading = format!("  {name:<width$}points         missing   rms height   rms slope (Sdq)   border step\n");
+    let heading =
+        format!("  {name:<width$}changed    points         missing   rms height   rms slope (Sdq)   border step\n");
     let text = rows.iter().fold(heading, |text, row| {
         let points = format!("{} x {}", row.grid[0], row.grid[1]);
         let (height, slope) = (engineering(row.rms_height, "m"), digits(row.rms_slope, 3));
         let step = row.border_step.map_or_else(|| "-".to_owned(), |ratio| digits(ratio, 3));
-        text + &format!("  {:<width$}{points:<15}{:<10}{height:<13}{slope:<18}{step}\n", row.treatment, row.missing)
+        text + &format!(
+            "  {:<width$}{:<11}{points:<15}{:<10}{height:<13}{slope:<18}{step}\n",
+            row.treatment,
+            changed(row),
+            row.missing
+        )
     });
     text + "\n"
+}
+
+/// Text of the number of points that a treatment changed.
+fn changed(row: &TreatmentRow) -> String {
+    match row.changed {
+        0 => "-".to_owned(),
+        changed if changed == row.grid[0] * row.grid[1] && !row.treatment.starts_with("crop") => "all".to_owned(),
+        changed => changed.to_string(),
+    }
 }
 
 /// Lines of the parameters of ISO 25178-2.

@@ -119,6 +119,7 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
         (Some(("spectrum", _)), ..) => "a surface of given waves".to_owned(),
         (Some(("psd", _)), _, _, Some(seed)) => format!("a surface of a tabulated spectrum, seed {seed}"),
         (Some(_), ..) => "a height map".to_owned(),
+        (None, None, ..) if keys.is_shape() => "a shape".to_owned(),
         (None, Some(waves), Some(hurst), Some(seed)) => format!("{waves} waves, H = {hurst}, seed {seed}"),
         _ => "a random surface".to_owned(),
     };

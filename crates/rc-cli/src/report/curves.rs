@@ -15,6 +15,7 @@ use rc_sweep::{TABLE_FILE, WarningCode};
 /// The columns of `sweep.csv` that the page uses, in SI units.
 #[derive(Clone, Debug, Deserialize)]
 struct Row {
+    /// Name of the scene and of the variation.
     #[serde(default)]
     scene: String,
     seed: Option<u64>,
@@ -123,9 +124,23 @@ fn warnings(rows: &[Row]) -> Vec<String> {
 
 fn read(path: &Path) -> Result<Vec<Row>, CliError> {
     let fail = |cause: csv::Error| CliError::in_file(path, format_args!("not a table of rc sweep: {cause}"));
-    let rows: Vec<Row> =
-        csv::Reader::from_path(path).map_err(fail)?.deserialize().collect::<Result<_, _>>().map_err(fail)?;
+    let mut reader = csv::Reader::from_path(path).map_err(fail)?;
+    let heads = reader.headers().map_err(fail)?.clone();
+    let row = |record: csv::StringRecord| -> Result<Row, csv::Error> {
+        let row: Row = record.deserialize(Some(&heads))?;
+        let varied = varied(&heads, &record);
+        let scene =
+            [row.scene].into_iter().chain(varied).filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
+        Ok(Row { scene, ..row })
+    };
+    let rows: Vec<Row> = reader.records().map(|record| row(record?)).collect::<Result<_, _>>().map_err(fail)?;
     if rows.is_empty() { Err(CliError::in_file(path, "has no rows")) } else { Ok(rows) }
+}
+
+/// The varied keys of a row with their values, such as `hardness 5000000.0`. They are between load and status.
+fn varied(heads: &csv::StringRecord, record: &csv::StringRecord) -> Vec<String> {
+    let cells = heads.iter().zip(record).skip_while(|(head, _)| *head != "control_value").skip(1);
+    cells.take_while(|(head, _)| *head != "status").map(|(head, cell)| format!("{head} {cell}")).collect()
 }
 
 /// A sentence about the rows, and whether all planned rows exist and converged.
@@ -275,11 +290,15 @@ fn commands(settings: &Value) -> Vec<Command> {
             flags(&surface),
             quoted(&format!("again{}{name}", if name.is_empty() { "" } else { "-" }))
         );
-        let note = match (surface["heights"].as_str(), surface["spectrum"].as_str()) {
-            (Some(map), _) => format!("In the folder of the height map {map}:"),
-            (None, Some(waves)) => format!("In the folder of the file of waves {waves}:"),
-            (None, None) => WITHOUT_FILES.to_owned(),
-        };
+        let kinds = [
+            ("heights", "the height map "),
+            ("spectrum", "the file of waves "),
+            ("psd", "the table of a spectrum "),
+            ("like", ""),
+        ];
+        let mut files = kinds.iter().filter_map(|(key, kind)| surface[*key].as_str().map(|file| (kind, file)));
+        let note =
+            files.next().map_or(WITHOUT_FILES.to_owned(), |(kind, file)| format!("In the folder of {kind}{file}:"));
         Command { note, text }
     };
     scenes.map(command).collect()

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rc_core::quantity::{digits, engineering};
-use rc_plot::Palette;
+use rc_plot::{Palette, range_of_most};
 use serde::Serialize;
 
 use super::command::quoted;
@@ -24,6 +24,8 @@ pub(super) struct SurfaceBody {
     sides: [f64; 2],
     /// Height above the lowest point (m).
     heights: EmbeddedField,
+    /// Heights above the lowest point at the ends of the colours (m).
+    span: (f64, f64),
     /// The lowest height (m).
     lowest: f64,
     note: String,
@@ -74,6 +76,7 @@ pub(super) fn page(path: &Path, quiet: bool) -> Result<Page<SurfaceBody>, CliErr
         body: SurfaceBody {
             sides: [record.cell, record.cell_y],
             heights: EmbeddedField::of_gap(&pixels, pixels.max(), Bits::Sixteen, Palette::Viridis),
+            span: range_of_most(&pixels),
             lowest: lowest * record.cell,
             note,
             spectrum: spectrum(&record),

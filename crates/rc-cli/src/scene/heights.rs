@@ -151,7 +151,7 @@ impl CellOfMap {
 }
 
 /// Whether two lengths are the same.
-fn same(a: f64, b: f64) -> bool {
+pub(crate) fn same(a: f64, b: f64) -> bool {
     (a / b - 1.0).abs() <= SAME_LENGTH
 }
 
@@ -171,19 +171,20 @@ fn check_given(path: &Path, of_file: [f64; 2], given: [Option<f64>; 2]) -> Resul
     Ok(())
 }
 
-/// The heights of a map (m) in λ, on the grid of its points.
-///
-/// The grid has the sides of `cell`.
+/// The heights of a map (m) on the grid of its points in `cell`.
 ///
 /// # Errors
 /// [`CliError::Input`] when the ratio of the cell's sides is too large.
-pub(crate) fn in_cell(path: &Path, map: Field, cell: PeriodicCell) -> Result<(Field, AsRead), CliError> {
+pub(crate) fn in_cell(path: &Path, map: Field, cell: PeriodicCell) -> Result<Field, CliError> {
     let grid = Grid::in_cell(map.grid().nx(), map.grid().ny(), cell.ratio())
         .map_err(|cause| CliError::in_file(path, format_args!("cell_y: {cause}")))?;
-    let mut heights = map.into_values();
-    let as_read = AsRead::divide(&mut heights, cell.side());
-    let heights = Field::new(grid, heights).map_err(|cause| CliError::in_file(path, cause))?;
-    Ok((heights, as_read))
+    Field::new(grid, map.into_values()).map_err(|cause| CliError::in_file(path, cause))
+}
+
+/// Heights (m) in λ, which is `side` (m), with the data that restore them.
+pub(crate) fn divided(mut heights: Field, side: f64) -> (Field, AsRead) {
+    let as_read = AsRead::divide(heights.values_mut(), side);
+    (heights, as_read)
 }
 
 #[cfg(test)]

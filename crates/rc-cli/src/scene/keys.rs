@@ -12,7 +12,9 @@ use rc_solver::Method;
 use rc_sweep::memory::{Budget, ByteSize, read_limit};
 use serde::{Deserialize, Serialize};
 
+use super::form::FormName;
 use super::names::{amplitudes, boundaries, methods, truncations};
+use super::quantity::{angle, force, length, pressure};
 use super::time_limit::TimeLimit;
 use super::values::{Conductivity, Fraction, GridSpec, HeightsLike, Marks, PsdConvention, ToleranceSpec};
 use crate::help;
@@ -27,10 +29,12 @@ pub const EXAMPLE: &str = include_str!("../../assets/paper-n64.toml");
 #[command(next_help_heading = help::SURFACE)]
 pub struct SurfaceKeys {
     /// Side λ of the cell, along x (m) [default: the file's; random surface: 0.01]
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "length::read")]
     pub cell: Option<f64>,
-    /// Side of the cell along y (m) [default: that in the file, or equal spacings]
-    #[arg(long, value_name = "M", help_heading = help::FILES, allow_hyphen_values = true)]
+    /// Side of the cell along y (m) [default: the file's, or equal spacings]
+    #[arg(long, value_name = "M", help_heading = help::FILES, value_parser = length::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "length::read")]
     pub cell_y: Option<f64>,
     /// Height map: text, .npy, instrument files; positive towards the half-space
     ///
@@ -73,13 +77,14 @@ pub struct SurfaceKeys {
     /// Height (m) of the value 1 in a file without a unit; overrides --unit
     ///
     /// In an image, 1 is one level of grey.
-    #[arg(long, value_name = "M", help_heading = help::FILES, allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", help_heading = help::FILES, value_parser = length::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "length::read")]
     pub height_scale: Option<f64>,
     /// Values that mark missing points, in the numbers of the file: -9999, or -9999,1e30
     #[arg(long, value_name = "VALUE[,VALUE]", help_heading = help::FILES, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub missing: Option<Marks>,
-    /// Masked points of a .gwy file: use (they are missing) or ignore [default: use]
+    /// Masked points of a .gwy: use (missing) or ignore [default: use]
     #[arg(long, value_name = "use|ignore", help_heading = help::FILES)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mask: Option<Mask>,
@@ -88,7 +93,7 @@ pub struct SurfaceKeys {
     /// rc inspect lists the channels of a file.
     #[arg(long, value_name = "NAME", help_heading = help::FILES)]
     pub channel: Option<String>,
-    /// Layout of an ambiguous text: each line a row (matrix) or point (xyz)
+    /// Lines of an ambiguous text: rows (matrix) or points (xyz)
     #[arg(long, value_name = "matrix|xyz", help_heading = help::FILES)]
     pub layout: Option<Layout>,
     /// N of a random surface: shortest wavelength = cell side / N [default: 64]
@@ -98,7 +103,8 @@ pub struct SurfaceKeys {
     #[arg(long, value_name = "H", allow_hyphen_values = true)]
     pub hurst: Option<f64>,
     /// Rms height (m) [default: 13e-6]
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "length::read")]
     pub rms: Option<f64>,
     /// Rms slope, instead of --rms
     #[arg(long, value_name = "SLOPE", help_heading = help::RANDOM, allow_hyphen_values = true)]
@@ -122,6 +128,35 @@ pub struct SurfaceKeys {
     /// fixed: those of the spectrum (Eq. 14); random: Gaussian [default: fixed]
     #[arg(long, value_name = "NAME", help_heading = help::RANDOM, value_parser = amplitudes(), hide_possible_values = true)]
     pub amplitudes: Option<Amplitudes>,
+    /// Alone or added: sphere, cylinder (--radius), cone (--angle), flat, wave (--wavelength, --wave-amplitude)
+    ///
+    /// The highest point is at the centre of the cell. The sphere is the paraboloid -r²/2R, the cylinder -x²/2R with
+    /// its axis along y. A wave is along x.
+    #[arg(long, value_name = "NAME", hide_possible_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shape: Option<FormName>,
+    /// Radius R of the sphere or cylinder (m)
+    #[arg(long, hide_short_help = true, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f64>,
+    /// Angle of the cone's flank to the plane (degrees)
+    #[arg(long, hide_short_help = true, value_name = "DEG", value_parser = angle::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "angle::read", skip_serializing_if = "Option::is_none")]
+    pub angle: Option<f64>,
+    /// Wavelength of the wave (m)
+    #[arg(long, hide_short_help = true, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
+    pub wavelength: Option<f64>,
+    /// Amplitude of the wave (m), half of its range
+    #[arg(long, hide_short_help = true, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
+    pub wave_amplitude: Option<f64>,
+    /// Height map of the other body, mirrored along x and added
+    ///
+    /// Both maps are positive towards the other body, and have the same grid and cell. The flags for files are for both.
+    #[arg(long, value_name = "FILE")]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub add: Option<PathBuf>,
     /// Elements per side, 512 or 512x256 [default: the map's; 32 per shortest wave]
     ///
     /// 512x256 is 512 along x and 256 along y.
@@ -138,27 +173,45 @@ pub struct SurfaceKeys {
 #[command(next_help_heading = help::CONTACT)]
 pub struct ContactKeys {
     /// Young's modulus (Pa) [default, random surface: 0.4e9]
-    #[arg(long, value_name = "PA", allow_hyphen_values = true)]
+    #[arg(long, value_name = "PA", value_parser = pressure::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "pressure::read")]
     pub young: Option<f64>,
     /// Poisson's ratio [default, random surface: 0.45]
     #[arg(long, value_name = "NU", allow_hyphen_values = true)]
     pub poisson: Option<f64>,
     /// E* = E/(1-ν²) (Pa), instead of --young and --poisson
-    #[arg(long, value_name = "PA", allow_hyphen_values = true)]
+    #[arg(long, value_name = "PA", value_parser = pressure::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "pressure::read")]
     pub e_star: Option<f64>,
+    /// Young's modulus of the other body (Pa) [default: it is rigid]
+    ///
+    /// It needs --poisson2 too. 1/E* is the sum of (1-ν²)/E of both bodies.
+    #[arg(long, value_name = "PA", help_heading = help::PHYSICS, value_parser = pressure::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "pressure::read", skip_serializing_if = "Option::is_none")]
+    pub young2: Option<f64>,
+    /// Poisson's ratio of the other body
+    #[arg(long, hide_short_help = true, value_name = "NU", help_heading = help::PHYSICS, allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub poisson2: Option<f64>,
     /// Mean pressure σ0 (Pa)
-    #[arg(long, value_name = "PA", allow_hyphen_values = true)]
+    #[arg(long, value_name = "PA", value_parser = pressure::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "pressure::read")]
     pub pressure: Option<f64>,
     /// Penetration Δ (m), instead of --pressure
-    #[arg(long, value_name = "M", allow_hyphen_values = true)]
+    #[arg(long, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "length::read")]
     pub penetration: Option<f64>,
+    /// Force (N), instead of --pressure: mean pressure times area of the cell
+    #[arg(long, value_name = "N", value_parser = force::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "force::read", skip_serializing_if = "Option::is_none")]
+    pub force: Option<f64>,
     /// Plastic contact: no pressure above this hardness (Pa)
     ///
     /// It is the usual first model of plastic contact. Without a hardness the contact is elastic.
-    #[arg(long, value_name = "PA", help_heading = help::PHYSICS, allow_hyphen_values = true)]
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[arg(long, value_name = "PA", help_heading = help::PHYSICS, value_parser = pressure::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "pressure::read", skip_serializing_if = "Option::is_none")]
     pub hardness: Option<f64>,
-    /// Conductivities of both bodies, such as 400,50: adds the conductance of the contact
+    /// Conductivities of both bodies, such as 400,50: adds the conductance
     ///
     /// Electrical (S/m) or thermal (W/(m K)). One value stands for both bodies.
     #[arg(long, value_name = "K1[,K2]", help_heading = help::PHYSICS, allow_hyphen_values = true)]
@@ -177,8 +230,8 @@ pub struct ContactKeys {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boundary: Option<Boundary>,
     /// Elastic layer of this thickness (m), bonded to a rigid base
-    #[arg(long, value_name = "M", help_heading = help::PHYSICS, allow_hyphen_values = true)]
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[arg(long, value_name = "M", help_heading = help::PHYSICS, value_parser = length::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
     pub layer_thickness: Option<f64>,
     /// Poisson's ratio of the layer [default: --poisson]
     #[arg(long, value_name = "NU", help_heading = help::PHYSICS, allow_hyphen_values = true)]
@@ -365,12 +418,33 @@ impl SurfaceKeys {
         Self { seed: None, amplitudes: None, ..self.clone() }.generates()
     }
 
+    /// Whether the surface is a shape and nothing else.
+    #[must_use]
+    pub fn is_shape(&self) -> bool {
+        self.shape.is_some() && self.file().is_none() && !self.generates()
+    }
+
+    /// What is added to a surface, in a cell: a shape and another body.
+    #[must_use]
+    pub fn added(self) -> Self {
+        let Self { cell, cell_y, shape, radius, angle, wavelength, wave_amplitude, add, .. } = self;
+        Self { cell, cell_y, shape, radius, angle, wavelength, wave_amplitude, add, ..Self::default() }
+    }
+
     /// Whether any parameter of a random surface is given.
     #[must_use]
     pub fn generates(&self) -> bool {
         let Self { waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, low_cut, amplitudes, .. } = self;
         let numbers = [hurst, rms, rms_slope, c0, roll_off, low_cut].iter().any(|key| key.is_some());
         numbers || waves.is_some() || seed.is_some() || truncation.is_some() || amplitudes.is_some()
+    }
+}
+
+impl ContactKeys {
+    /// Number of keys that give the load.
+    #[must_use]
+    pub fn n_loads(&self) -> usize {
+        [self.pressure, self.penetration, self.force].iter().flatten().count()
     }
 }
 
@@ -384,8 +458,8 @@ impl Scene {
     /// The scene with its relative paths taken from `folder`.
     #[must_use]
     pub fn relative_to(mut self, folder: &Path) -> Self {
-        let SurfaceKeys { heights, spectrum, psd, like, .. } = &mut self.surface;
-        for path in [heights, spectrum, psd, like, &mut self.run.out].into_iter().flatten() {
+        let SurfaceKeys { heights, spectrum, psd, like, add, .. } = &mut self.surface;
+        for path in [heights, spectrum, psd, like, add, &mut self.run.out].into_iter().flatten() {
             *path = folder.join(&*path);
         }
         self

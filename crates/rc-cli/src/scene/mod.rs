@@ -3,8 +3,11 @@
 pub mod as_read;
 pub(crate) mod features;
 pub mod file;
+pub mod form;
 pub mod keys;
 pub(crate) mod like;
+pub mod loaded;
+pub(crate) mod origin;
 pub mod resolve;
 pub mod surface;
 pub mod time_limit;
@@ -13,5 +16,7 @@ pub mod wave_file;
 
 pub mod heights;
 mod names;
+mod other_body;
 pub(crate) mod profile;
 pub mod psd_file;
+pub(crate) mod quantity;

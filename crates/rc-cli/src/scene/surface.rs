@@ -2,24 +2,24 @@
 //!
 //! Its heights on a grid are evaluated only where a method needs them.
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use rc_core::quantity::digits;
-use rc_core::{Boundary, Field, Grid, HeightSource, PeriodicCell};
-use rc_fractal::{
-    Amplitudes, Moments, SpectrumParams, Surface, height_and_slope_of_grid, height_and_slope_of_patch, moments_of_grid,
-};
+use rc_core::{Boundary, Field, Grid, PeriodicCell};
+use rc_fractal::{Amplitudes, Moments, SpectrumParams, Surface};
 use rc_heights::{HeightMap, ReadParams, Scales};
 
-use super::as_read::AsRead;
+use super::form::{Form, FormedSurface};
 use super::heights::{self, CellOfMap};
 use super::keys::SurfaceKeys;
 use super::like::{self, Reference};
+use super::loaded::{LoadedSurface, Shape, sampled};
+use super::origin;
+use super::other_body::OtherBody;
 use super::psd_file::PsdFile;
 use super::values::{GridSpec, HeightsLike};
-use super::wave_file::{PSD_FILE, WAVES_FILE, WaveFile};
+use super::wave_file::WaveFile;
 use crate::error::CliError;
 use crate::files::names::HEIGHTS_FILE;
 use crate::warnings;
@@ -32,6 +32,8 @@ pub struct SurfaceSetup {
     pub cell: PeriodicCell,
     /// Origin of the heights.
     pub source: Source,
+    /// A shape that is added to the heights, or is the surface.
+    pub form: Option<Form>,
     /// Whether a map with equal heights is a surface. It is a flat punch with free borders.
     pub may_be_flat: bool,
     /// The resolved keys, for `scene.toml`.
@@ -100,40 +102,10 @@ pub enum Source {
         /// The finest grid.
         grid: Grid,
     },
-}
-
-/// A surface whose heights can be evaluated.
-#[derive(Clone, Debug)]
-pub struct LoadedSurface {
-    /// The waves or the map.
-    pub shape: Shape,
-    /// The finest grid.
-    pub grid: Grid,
-    /// The resolved keys.
-    ///
-    /// They include the grid, and a height map has the name of a result folder.
-    pub keys: SurfaceKeys,
-    /// Doubts about the values of a map and what was assumed about it.
-    pub warnings: Vec<Warning>,
-    /// What the reader did, one line each.
-    pub notes: Vec<String>,
-    /// rms height (λ) and rms slope of a map, with periodic and with free borders, after their first use.
-    of_map: [OnceLock<[f64; 2]>; 2],
-}
-
-/// A surface as a sum of waves, or as a map.
-#[derive(Clone, Debug)]
-pub enum Shape {
-    /// A random surface, which has heights anywhere.
-    Random(Arc<Surface>),
-    /// A surface of the waves or of the spectrum in a file, which has heights anywhere.
-    Waves(Arc<WaveFile>),
-    /// A height map.
-    Map {
-        /// Heights in λ.
-        heights: Arc<Field>,
-        /// Data that restore the heights of the file.
-        as_read: AsRead,
+    /// A shape alone.
+    Shape {
+        /// The finest grid.
+        grid: Grid,
     },
 }
 
@@ -165,6 +137,7 @@ impl SurfaceSetup {
         Self {
             cell,
             source,
+            form: None,
             may_be_flat: false,
             keys,
             assumed: Vec::new(),
@@ -180,6 +153,31 @@ impl SurfaceSetup {
         self
     }
 
+    /// The surface with this boundary.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] for a shape that has no contact problem in a periodic cell.
+    pub(crate) fn bounded(self, boundary: Boundary) -> Result<Self, CliError> {
+        let is_patch = boundary == Boundary::Free;
+        let is_shape = matches!(self.source, Source::Shape { .. }) && self.keys.add.is_none();
+        match self.form {
+            Some(Form::Flat) if is_shape && !is_patch => Err(CliError::input(
+                "shape: a flat surface in a periodic cell has no contact problem; give --boundary free",
+            )),
+            Some(Form::Wave { waves, .. }) if waves.fract() != 0.0 && !is_patch => Err(CliError::input(format_args!(
+                "wavelength: {} waves in the cell do not repeat; give a whole part of the cell, or --boundary free",
+                digits(waves, 6)
+            ))),
+            _ => Ok(Self { may_be_flat: is_patch, ..self }),
+        }
+    }
+
+    /// Whether the heights are a sum, and not those of a file or a program alone.
+    #[must_use]
+    pub fn is_sum(&self) -> bool {
+        self.form.is_some() || self.keys.add.is_some()
+    }
+
     /// Number of elements of the finest grid.
     ///
     /// For a height map it is an upper bound from the length of its file.
@@ -189,7 +187,8 @@ impl SurfaceSetup {
             Source::Random { grid, .. }
             | Source::Waves { grid, .. }
             | Source::Spectrum { grid, .. }
-            | Source::Twin { grid, .. } => grid.len() as f64,
+            | Source::Twin { grid, .. }
+            | Source::Shape { grid } => grid.len() as f64,
             // A useful map has at least two bytes per height.
             Source::File { path, .. } => path.metadata().map_or(0.0, |file| file.len() as f64 / 2.0),
         }
@@ -208,15 +207,15 @@ impl SurfaceSetup {
                 let map = held.map_or_else(|| heights::read(path, params, *scales), Ok)?;
                 let mut surface = self.of_map(path, map, *expected)?;
                 surface.warnings.extend(warnings::surface::of_record(path));
+                surface.origin = Some(origin::of(path, params.channel.as_deref()));
                 Ok(surface)
             }
             Source::Random { spectrum, grid } => {
-                let surface = Surface::new(spectrum).map_err(CliError::input)?;
-                Ok(LoadedSurface::of_waves(Shape::Random(Arc::new(surface)), *grid, self.keys.clone()))
+                let surface = Arc::new(Surface::new(spectrum).map_err(CliError::input)?);
+                self.generated(Some((surface, None)), *grid)
             }
             Source::Waves { waves, grid, .. } => {
-                let keys = SurfaceKeys { spectrum: Some(WAVES_FILE.into()), ..self.keys.clone() };
-                Ok(LoadedSurface::of_waves(Shape::Waves(Arc::clone(waves)), *grid, keys))
+                self.generated(Some((Arc::clone(waves.surface()), Some(Arc::clone(waves)))), *grid)
             }
             Source::Twin { like, of_map, heights, seed, grid } => {
                 let held = self.reference.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -224,16 +223,51 @@ impl SurfaceSetup {
                 let twin = reference.twin((*grid, self.cell.sides()), *seed, *heights)?;
                 let mut surface = self.of_map(like, twin, None)?;
                 surface.notes.push(like::note(like, *seed, *heights));
+                let mut origin = origin::of(&like::file_of(like), of_map.channel.as_deref());
+                origin.treatments.push(format!("twin, seed {seed}"));
+                surface.origin = Some(origin);
                 Ok(surface)
             }
             Source::Spectrum { table, amplitudes, seed, grid, .. } => {
-                let waves = table.realisation(*amplitudes, *seed)?;
-                let keys = SurfaceKeys { psd: Some(PSD_FILE.into()), like: None, ..self.keys.clone() };
-                let warnings = warnings::surface::assumed(&self.assumed).into_iter().collect();
-                let surface = LoadedSurface::of_waves(Shape::Waves(Arc::new(waves)), *grid, keys);
-                Ok(LoadedSurface { warnings, ..surface })
+                let waves = Arc::new(table.realisation(*amplitudes, *seed)?);
+                self.generated(Some((Arc::clone(waves.surface()), Some(waves))), *grid)
             }
+            Source::Shape { grid } => self.generated(None, *grid),
         }
+    }
+
+    /// A surface of waves, from a file or not, with what is added to it.
+    fn generated(
+        &self,
+        waves: Option<(Arc<Surface>, Option<Arc<WaveFile>>)>,
+        grid: Grid,
+    ) -> Result<LoadedSurface, CliError> {
+        if self.keys.add.is_some() {
+            let sampled = waves.map_or_else(|| Ok(Field::zeros(grid)), |(surface, _)| sampled(&surface, grid))?;
+            let mut heights = sampled;
+            heights.values_mut().iter_mut().for_each(|height| *height *= self.cell.side());
+            return self.of_map(Path::new("add"), HeightMap::bare(heights), None);
+        }
+        let file = waves.as_ref().and_then(|(_, file)| file.clone());
+        let keys = self.keys.clone();
+        let keys = file.as_ref().map_or(keys.clone(), |file| file.keys(keys));
+        let base = waves.map(|(surface, _)| surface);
+        let mut warnings: Vec<_> = warnings::surface::assumed(&self.assumed).into_iter().collect();
+        if let (Some(_), Some(base)) = (self.form, &base) {
+            let Moments { rms_height, rms_slope, .. } = base.moments();
+            let shape = warnings::surface::Shape::of_waves(rms_height * self.cell.side(), rms_slope, self.cell.sides());
+            warnings.extend(shape.warnings());
+        }
+        let shape = match (self.form, base, file) {
+            (None, Some(_), Some(file)) => Shape::Waves(file),
+            (None, Some(surface), None) => Shape::Random(surface),
+            (form, base, file) => {
+                let form = form.unwrap_or(Form::Flat);
+                Shape::Formed { surface: Arc::new(FormedSurface { base, form }), file }
+            }
+        };
+        let (form, notes) = (self.form, Vec::new());
+        Ok(LoadedSurface { shape, grid, keys, warnings, notes, origin: None, form, of_map: Default::default() })
     }
 
     /// A map in metres, read from `path`, as a surface in this cell.
@@ -244,17 +278,21 @@ impl SurfaceSetup {
     pub fn of_map(&self, path: &Path, map: HeightMap, expected: Option<Grid>) -> Result<LoadedSurface, CliError> {
         CellOfMap::of(path, &map, [Some(self.cell.side()), self.keys.cell_y])?;
         heights::check_heights(path, &map.heights, &self.keys.read_params())?;
-        let mut warnings = warnings::surface::of_map(&map);
+        let mut warnings = Vec::new();
+        if matches!(self.source, Source::File { .. }) {
+            warnings.extend(warnings::surface::of_map(&map));
+        }
         warnings.extend(warnings::surface::assumed(&self.assumed));
         let notes = map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
-        let range = [map.heights.min(), map.heights.max()];
-        let (heights, as_read) = heights::in_cell(path, map.heights, self.cell)?;
-        let grid = heights.grid();
-        let (nx, ny) = (grid.nx(), grid.ny());
+        let (nx, ny) = (map.heights.grid().nx(), map.heights.grid().ny());
         if let Some(expected) = expected.filter(|expected| (expected.nx(), expected.ny()) != (nx, ny)) {
-            let message = format_args!("the map has {grid} elements, but grid says {expected}; omit grid");
+            let message =
+                format_args!("the map has {} elements, but grid says {expected}; omit grid", map.heights.grid());
             return Err(CliError::in_file(path, message));
         }
+        let mut map = heights::in_cell(path, map.heights, self.cell)?;
+        warnings.extend(self.add_to(&mut map)?);
+        let range = [map.min(), map.max()];
         if range[1] <= range[0] && !self.may_be_flat {
             let message = format_args!(
                 "all heights are {}; a flat surface in a periodic cell has no contact problem",
@@ -262,117 +300,31 @@ impl SurfaceSetup {
             );
             return Err(CliError::in_file(path, message));
         }
-        let spec = GridSpec { nx, ny };
-        // In a result folder the map is an array in metres.
-        let keys = SurfaceKeys {
-            heights: Some(HEIGHTS_FILE.into()),
-            like: None,
-            heights_like: None,
-            seed: None,
-            unit: None,
-            height_unit: None,
-            height_scale: None,
-            missing: None,
-            mask: None,
-            channel: None,
-            layout: None,
-            grid: Some(spec),
-            ..self.keys.clone()
-        };
+        let grid = map.grid();
+        let (heights, as_read) = heights::divided(map, self.cell.side());
+        // In a result folder the map is an array in metres, and a sum is a map.
+        let SurfaceKeys { cell, cell_y, read_limit, .. } = self.keys;
+        let (path, spec) = (Some(HEIGHTS_FILE.into()), Some(GridSpec { nx, ny }));
+        let keys = SurfaceKeys { heights: path, cell, cell_y, grid: spec, read_limit, ..SurfaceKeys::default() };
         let shape = Shape::Map { heights: Arc::new(heights), as_read };
-        Ok(LoadedSurface { shape, grid, keys, warnings, notes, of_map: Default::default() })
-    }
-}
-
-impl Shape {
-    /// The sum of waves of the surface, or the map as the error.
-    fn waves_or_map(&self) -> Result<&Surface, &Field> {
-        match self {
-            Self::Random(surface) => Ok(surface),
-            Self::Waves(file) => Ok(file.surface()),
-            Self::Map { heights, .. } => Err(heights),
-        }
-    }
-}
-
-impl LoadedSurface {
-    /// A surface of waves.
-    fn of_waves(shape: Shape, grid: Grid, keys: SurfaceKeys) -> Self {
-        Self { shape, grid, keys, warnings: Vec::new(), notes: Vec::new(), of_map: Default::default() }
+        let form = self.form;
+        Ok(LoadedSurface { shape, grid, keys, warnings, notes, origin: None, form, of_map: Default::default() })
     }
 
-    /// Heights on the finest grid, in λ.
-    ///
-    /// Those of a sum of waves are evaluated now, with 8 bytes each.
-    ///
-    /// # Errors
-    /// [`CliError::Input`] when the grid is too coarse for the waves.
-    pub fn heights(&self) -> Result<Cow<'_, Field>, CliError> {
-        match self.shape.waves_or_map() {
-            Ok(waves) => {
-                let sampled = waves.sample_on(self.grid);
-                sampled.map(Cow::Owned).map_err(|cause| CliError::input(format_args!("grid: {cause}")))
+    /// Adds shape and other body to the `heights` (m) of a map, and returns the doubts about the parts.
+    fn add_to(&self, heights: &mut Field) -> Result<Vec<Warning>, CliError> {
+        let mut doubts = Vec::new();
+        if let Some(form) = self.form {
+            if matches!(self.source, Source::File { .. } | Source::Twin { .. }) {
+                doubts = warnings::surface::Shape::of_heights(heights, self.cell).warnings();
             }
-            Err(map) => Ok(Cow::Borrowed(map)),
+            let grid = heights.grid();
+            form.add_to(heights.values_mut(), grid, self.cell.side());
         }
-    }
-
-    /// The heights of a contact problem on the finest grid.
-    ///
-    /// Those of a sum of waves are not evaluated yet.
-    #[must_use]
-    pub fn source(&self) -> HeightSource<'static> {
-        match &self.shape {
-            Shape::Random(surface) => HeightSource::shared(Arc::<Surface>::clone(surface), self.grid),
-            Shape::Waves(file) => HeightSource::shared(Arc::<Surface>::clone(file.surface()), self.grid),
-            Shape::Map { heights, .. } => Arc::clone(heights).into(),
+        if let Some(other) = &self.keys.add {
+            let read = OtherBody::read(other, &self.keys, self.cell)?;
+            doubts.extend(read.add_mirrored(heights)?);
         }
-    }
-
-    /// Rms height (λ) and rms slope.
-    ///
-    /// For a sum of waves they are exact. For a height map they are those of its grid, which continues across its
-    /// borders unless the borders are free.
-    #[must_use]
-    pub fn height_and_slope(&self, boundary: Boundary) -> [f64; 2] {
-        match self.shape.waves_or_map() {
-            Ok(waves) => {
-                let Moments { rms_height, rms_slope, .. } = waves.moments();
-                [rms_height, rms_slope]
-            }
-            Err(map) if boundary == Boundary::Free => *self.of_map[1].get_or_init(|| height_and_slope_of_patch(map)),
-            Err(map) => *self.of_map[0].get_or_init(|| height_and_slope_of_grid(map)),
-        }
-    }
-
-    /// Moments in units of λ.
-    ///
-    /// They are exact for a sum of waves, and those of the grid for a height map.
-    #[must_use]
-    pub fn moments(&self) -> Moments {
-        match self.shape.waves_or_map() {
-            Ok(waves) => waves.moments(),
-            Err(map) => moments_of_grid(map),
-        }
-    }
-
-    /// The map from which the heights are read; `None` for a sum of waves.
-    ///
-    /// The heights are in λ. The other part restores the heights of the file in metres.
-    #[must_use]
-    pub fn map(&self) -> Option<(&Field, &AsRead)> {
-        match &self.shape {
-            Shape::Map { heights, as_read } => Some((heights, as_read)),
-            Shape::Random(_) | Shape::Waves(_) => None,
-        }
-    }
-
-    /// The file that has the waves or the spectrum of the surface; `None` for other surfaces.
-    #[must_use]
-    pub fn wave_file(&self) -> Option<&Arc<WaveFile>> {
-        match &self.shape {
-            Shape::Waves(file) => Some(file),
-            Shape::Random(_) | Shape::Map { .. } => None,
-        }
+        Ok(doubts)
     }
 }

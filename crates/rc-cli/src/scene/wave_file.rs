@@ -8,6 +8,7 @@ use rc_fractal::{Complex64, Moments, Surface, Wave};
 use rc_heights::spectrum::{self, Coefficient};
 use rc_heights::{LengthUnit, Scales, pairs};
 
+use super::keys::SurfaceKeys;
 use crate::error::CliError;
 
 /// Name of a file of coefficients in a result folder.
@@ -76,6 +77,16 @@ impl WaveFile {
         match self.content {
             Content::Coefficients(_) => WAVES_FILE,
             Content::Spectrum(_) => PSD_FILE,
+        }
+    }
+
+    /// The keys of a surface from this file in a result folder; `keys` are its other keys.
+    #[must_use]
+    pub(super) fn keys(&self, keys: SurfaceKeys) -> SurfaceKeys {
+        let path = Some(self.name().into());
+        match self.content {
+            Content::Coefficients(_) => SurfaceKeys { spectrum: path, ..keys },
+            Content::Spectrum(_) => SurfaceKeys { psd: path, like: None, ..keys },
         }
     }
 

@@ -28,7 +28,7 @@ pub(crate) struct SolveArgs {
 }
 
 const SOLVE_HELP: &str = "\
-Give --pressure or --penetration, exactly one. Flags override the keys of the scene file.
+Give --pressure, --penetration or --force, exactly one. Numbers may have units, such as 10kPa. Flags override the keys of the scene file.
 A height map has no default material: give --e-star, or --young and --poisson. If its file has no size, give --cell too.
 
 DIR receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene.toml.
@@ -38,7 +38,7 @@ const SOLVE_MANUAL: &str = "\
 Where neither scene file nor flags give a value, that of the paper's surface is taken: cell 0.01 m, E = 0.4 GPa, ν = 0.45, N = 64, H = 0.8, \
 rms 13 µm, seed 1, kernel love, energy tolerance 0.01. A height map never takes the cell or the material of the paper's surface: with --heights, give \
 --e-star, or --young and --poisson. If the file has no size, give --cell too. Only rc solve without arguments (or with --dry-run alone) has a \
-load of its own. Otherwise give --pressure or --penetration, exactly one. A flag also replaces its alternatives: --penetration replaces the pressure of the scene file, and \
+load of its own. Otherwise give --pressure, --penetration or --force, exactly one. Numbers may have units, such as 10kPa, 25um, 200GPa or 10N. A flag also replaces its alternatives: --penetration replaces the pressure of the scene file, and \
 --heights its random surface. Relative paths in a scene file start at its folder.
 
 DIR (--out) receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene.toml, from which the result can be \

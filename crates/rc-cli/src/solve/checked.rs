@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use rc_core::{Boundary, Kernel, Observer};
+use rc_core::{Kernel, Observer};
 use rc_solver::Feature;
 use rc_sweep::memory::Budget;
 
@@ -10,8 +10,9 @@ use super::solved::{ProblemSetup, Solved};
 use crate::error::CliError;
 use crate::scene::features;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve::{self, ContactSetup};
-use crate::scene::surface::{LoadedSurface, SurfaceSetup};
+use crate::scene::surface::SurfaceSetup;
 use crate::scene::values::{Fraction, ToleranceSpec};
 
 /// A checked contact problem, common to the command line and the Python module.
@@ -66,9 +67,9 @@ impl CheckedScene {
         } else {
             contact
         };
-        let mut surface = surface()?;
+        let surface = surface()?;
         let contact = ContactSetup { grid_is_chosen: area_error.is_some(), ..resolve::contact(contact, surface.cell)? };
-        surface.may_be_flat = contact.boundary == Boundary::Free;
+        let surface = surface.bounded(contact.boundary)?;
         Ok(Self { surface, contact, area_error })
     }
 

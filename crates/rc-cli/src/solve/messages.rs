@@ -8,8 +8,8 @@ use rc_sweep::memory::Budget;
 use super::failure::Failure;
 use crate::error::CliError;
 use crate::scene::features;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve::ContactSetup;
-use crate::scene::surface::LoadedSurface;
 
 /// The solver's refusal of a contact, as an error in SI units.
 ///

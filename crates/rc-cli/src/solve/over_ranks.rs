@@ -133,8 +133,7 @@ fn prepare(args: SolveArgs, (checkpoint, zarr): (Option<&Path>, bool), ranks: &R
 /// The keys that determine the solution, with size and time of the files they name.
 fn scene_text(scene: &Scene) -> String {
     let Scene { surface, contact, .. } = scene;
-    let files = surface
-        .files()
-        .map(|(_, path)| format!("{:?}", path.metadata().ok().map(|data| (data.len(), data.modified().ok()))));
+    let files = surface.files().map(|(_, path)| path).chain(surface.add.as_deref());
+    let files = files.map(|path| format!("{:?}", path.metadata().ok().map(|data| (data.len(), data.modified().ok()))));
     [file::to_toml(surface), file::to_toml(contact)].into_iter().chain(files).collect::<Vec<_>>().join("\n")
 }

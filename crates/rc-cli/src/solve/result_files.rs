@@ -10,7 +10,7 @@ use rc_heights::npy::RowWriter;
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution};
 use rc_sweep::files::{FileError, Staged};
-use rc_sweep::{SolveContext, Summary, Warning};
+use rc_sweep::{MapOrigin, SolveContext, Summary, Warning};
 
 use super::leakage::SolvedFlow;
 use super::map_file::MapFile;
@@ -45,6 +45,8 @@ pub struct ResultFiles<'a> {
     pub flow: Option<&'a SolvedFlow>,
     /// The warnings that were known before the solve.
     pub warnings: &'a [Warning],
+    /// The file of the map, if it was read from one.
+    pub origin: Option<&'a MapOrigin>,
 }
 
 /// The heights of a map.
@@ -85,7 +87,7 @@ impl ResultFiles<'_> {
         let leakage = self.flow.map(|flow| flow.summary.clone());
         let summary = Summary::of(self.solution, self.contact.units, &context);
         let warnings = self.all_warnings();
-        Summary { leakage, warnings, ..summary }
+        Summary { leakage, warnings, source: self.origin.cloned(), ..summary }
     }
 
     /// The warnings from before the solve, and those that only the solution shows.

@@ -16,8 +16,8 @@ use super::result_files::{MapHeights, ResultFiles};
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
 use crate::files::coarsen::check_factor;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve::{self, ContactSetup, Place};
-use crate::scene::surface::LoadedSurface;
 use crate::scene::values::Fraction;
 use crate::warnings;
 
@@ -261,8 +261,8 @@ impl<'a> Solved<'a> {
         let ProblemSetup { surface, contact, .. } = self.problem;
         let map = surface.map().map(|(heights, as_read)| MapHeights::InCell { heights, as_read });
         let waves = surface.wave_file().map(AsRef::as_ref);
-        let (flow, warnings) = (self.flow.as_ref(), &self.warnings[..]);
-        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution, flow, warnings }
+        let (flow, warnings, origin) = (self.flow.as_ref(), &self.warnings[..], surface.origin.as_ref());
+        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution, flow, warnings, origin }
     }
 }
 

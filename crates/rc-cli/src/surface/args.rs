@@ -32,5 +32,5 @@ const SURFACE_HELP: &str = "\
 --out DIR receives heights.npy (m), scene.toml, surface.png and surface.json. --out FILE.npy, .csv, .gsf or .nc receives the \
 heights alone (m); .gsf and .nc carry the size too.
 
-Most measured maps need --crop square --level plane --fill laplace --periodic mirror. What each treatment changes is printed \
+Most measured maps need --crop measured --despike --level plane --fill laplace --periodic mirror, which rc prepare does. What each treatment changes is printed \
 and goes into surface.json.";

@@ -2,43 +2,28 @@
 
 pub(crate) mod args;
 
-mod surface_files;
-mod treatment;
+pub(crate) mod surface_files;
+pub(crate) mod treated;
+pub(crate) mod treatment;
 
+pub use treated::prepared;
 pub use treatment::treatments;
 
 use std::path::Path;
 
-use rc_heights::{Effect, HeightMap, TreatError, Treatment};
 use rc_sweep::memory::Budget;
-use rc_sweep::{Warning, files, to_json};
+use rc_sweep::{files, to_json};
 
 use self::args::SurfaceArgs;
-use self::surface_files::{is_map, write_folder, write_map};
+use self::surface_files::{is_map, stage_folder, write_map};
+use self::treated::Prepared;
 use crate::error::CliError;
-use crate::inspect::record::{SurfaceRecord, TreatmentRow};
 use crate::inspect::text::heights as lines;
 use crate::run::threads;
-use crate::scene::heights::CellOfMap;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene, SurfaceKeys};
-use crate::scene::surface::LoadedSurface;
-use crate::scene::{heights, resolve};
+use crate::scene::resolve;
 use crate::warnings::shown::{refuse, tell};
-use crate::warnings::surface as doubts;
 use crate::{terminal, text};
-
-/// A surface in its cell, with the effects of its treatments.
-struct Prepared {
-    surface: LoadedSurface,
-    /// Side of the cell along x (m).
-    side: f64,
-    /// Statistics of a height map before the treatments and after each; empty without treatments.
-    effects: Vec<Effect>,
-    /// Doubts about the map as read, and about its treatments.
-    warnings: Vec<Warning>,
-    /// What the reader of the map did.
-    notes: Vec<String>,
-}
 
 /// Runs `rc surface`.
 ///
@@ -56,25 +41,26 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
     if let Some(target) = scene.run.out.as_deref() {
         files::check_folder(if is_map(target) { target.parent().unwrap_or(Path::new("")) } else { target })?;
     }
-    let prepared =
-        if treatments.is_empty() { untreated(scene.surface)? } else { treated(scene.surface, &treatments, budget)? };
+    let prepared = if treatments.is_empty() {
+        untreated(scene.surface)?
+    } else {
+        treated::treat(treated::read(scene.surface)?, &treatments, budget)?
+    };
     budget.check_grid("the surface", prepared.surface.grid)?;
     write(&prepared, &scene.run)
 }
 
 /// Writes and prints the surface.
-fn write(Prepared { surface, side, effects, warnings, notes }: &Prepared, run: &RunKeys) -> Result<(), CliError> {
+fn write(prepared: &Prepared, run: &RunKeys) -> Result<(), CliError> {
+    let Prepared { surface, side, .. } = prepared;
     let heights = surface.heights()?;
-    let mut record = SurfaceRecord::of(&heights, *side, surface.moments());
-    record.treatments = effects.iter().map(TreatmentRow::from).collect();
-    record.notes.clone_from(notes);
-    record.warnings = [&warnings[..], &record.shape().warnings()].concat();
+    let record = prepared.record(&heights);
     refuse(&record.warnings, run.strict, "; nothing was written")?;
     tell(&record.warnings, run);
     let target = run.out.as_deref();
     match target {
         Some(target) if is_map(target) => write_map(target, surface, &heights, *side)?,
-        Some(folder) => write_folder(folder, surface, &heights, &record, *side)?,
+        Some(folder) => stage_folder(folder, surface, &heights, &record, *side)?.commit()?,
         None => {}
     }
     match (run.json, run.quiet) {
@@ -90,55 +76,4 @@ fn untreated(keys: SurfaceKeys) -> Result<Prepared, CliError> {
     let mut surface = setup.load()?;
     let (warnings, notes) = (std::mem::take(&mut surface.warnings), std::mem::take(&mut surface.notes));
     Ok(Prepared { surface, side: setup.cell.side(), effects: Vec::new(), warnings, notes })
-}
-
-/// A height map after `treatments`.
-fn treated(keys: SurfaceKeys, treatments: &[Treatment], budget: Budget) -> Result<Prepared, CliError> {
-    let Some(path) = keys.heights.clone() else {
-        let message =
-            "crop, flip, fill, level, periodic, low_pass, resample and repeat are for height maps; give --heights FILE";
-        return Err(CliError::input(message));
-    };
-    resolve::check_size(&keys)?;
-    let mut map = heights::read(&path, &keys.read_params(), keys.scales())?;
-    let CellOfMap { cell, cell_y, assumed } = CellOfMap::of(&path, &map, [keys.cell, keys.cell_y])?;
-    let mut warnings = doubts::of_map(&map);
-    warnings.extend(doubts::assumed(&assumed));
-    let notes = map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
-    map.sides = cell.map(|cell| [cell, cell_y.unwrap_or(cell)]);
-    map.notes.clear();
-    let grids = rc_heights::grids_after(&map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
-    for (grid, treatment) in grids.into_iter().zip(treatments) {
-        budget.check_grid(&format!("the map after {treatment}"), grid)?;
-    }
-    let mut effects = vec![Effect::of(&map, "as read")];
-    let (map, after) = rc_heights::apply(map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
-    effects.extend(after);
-    warnings.extend(filled(treatments, &effects));
-    warnings.extend(doubts::of_record(&path));
-    let CellOfMap { cell, cell_y, .. } = CellOfMap::of(&path, &map, [None, None])?;
-    let expected = keys.grid.map(resolve::checked_grid).transpose()?;
-    let setup = resolve::surface_in_cell(SurfaceKeys { cell, cell_y, grid: None, ..keys })?;
-    Ok(Prepared { surface: setup.of_map(&path, map, expected)?, side: setup.cell.side(), effects, warnings, notes })
-}
-
-/// A map in metres after treatments that are checked, and the doubts that `rc surface` has about it.
-///
-/// # Errors
-/// [`TreatError`].
-pub fn prepared(map: HeightMap, treatments: &[Treatment]) -> Result<(HeightMap, Vec<Warning>), TreatError> {
-    let mut warnings = doubts::of_map(&map);
-    let mut effects = vec![Effect::of(&map, "as read")];
-    let (map, after) = rc_heights::apply(map, treatments)?;
-    effects.extend(after);
-    warnings.extend(filled(treatments, &effects));
-    Ok((map, warnings))
-}
-
-/// A doubt about the points that a treatment has filled.
-fn filled(treatments: &[Treatment], effects: &[Effect]) -> Option<Warning> {
-    let at = treatments.iter().position(|treatment| matches!(treatment, Treatment::Fill(_)))?;
-    // The first state is that before all treatments.
-    let before = effects.get(at)?;
-    doubts::filled(before.missing, before.grid.len())
 }

@@ -5,14 +5,14 @@ use std::path::Path;
 
 use rc_core::Field;
 use rc_heights::{gsf, netcdf, npy, text};
-use rc_plot::{Map, MapPicture, Palette, Shade, save_png};
+use rc_plot::{Map, MapPicture, Shade, save_png};
 use rc_sweep::files::{self, FileError, Staged};
 use rc_sweep::to_json;
 
 use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SCENE_FILE};
 use crate::inspect::record::SurfaceRecord;
 use crate::scene::file;
-use crate::scene::surface::LoadedSurface;
+use crate::scene::loaded::LoadedSurface;
 
 /// A format of the heights alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,26 +66,25 @@ pub(super) fn write_map(target: &Path, surface: &LoadedSurface, heights: &Field,
     })
 }
 
-/// Writes the folder of a surface, which `rc solve` can solve.
+/// The files of the folder of a surface, which `rc solve` can solve.
 ///
 /// # Errors
 /// [`FileError::Write`].
-pub(super) fn write_folder(
+pub(crate) fn stage_folder(
     folder: &Path,
     surface: &LoadedSurface,
     heights: &Field,
     record: &SurfaceRecord,
     side: f64,
-) -> Result<(), FileError> {
+) -> Result<Staged, FileError> {
     let (field, factor) = in_metres(surface, heights, side);
     // A generated surface has a default material, the others have none.
-    let material = if surface.keys.file().is_some() { "--e-star ... " } else { "" };
+    let material = if surface.keys.file().is_some() || surface.keys.is_shape() { "--e-star ... " } else { "" };
     let scene = format!(
         "# The surface; `rc solve scene.toml {material}--pressure ...` presses it.\n\n{}",
         file::to_toml(&surface.keys)
     );
-    let range = (heights.min(), heights.max());
-    let shade = Shade::Values { range, palette: Palette::Viridis, factor: side, unit: "m" };
+    let shade = Shade::of_heights(heights, side);
     let picture = MapPicture(Map { title: "Height", field: heights, shade, side });
     let mut staged = Staged::new(folder)?;
     staged.add(HEIGHTS_FILE, |path| npy::write(path, &field, factor))?;
@@ -95,5 +94,5 @@ pub(super) fn write_folder(
     staged.add("surface.png", |path| save_png(&picture, path))?;
     staged.add_text(SCENE_FILE, &scene)?;
     staged.add_text(RECORD_FILE, &to_json(record))?;
-    staged.commit()
+    Ok(staged)
 }

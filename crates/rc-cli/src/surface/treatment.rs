@@ -5,31 +5,44 @@ use rc_core::{Grid, GridError};
 use rc_heights::{Crop, Fill, Flip, Level, Periodic, Repeat, Treatment};
 
 use crate::error::CliError;
+use crate::scene::quantity::length;
 use crate::scene::values::GridSpec;
+
+/// Robust deviations of a spike, if none are given.
+pub(crate) const DESPIKE: f64 = 8.0;
 
 /// What is done to a height map before it is written.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
 #[command(next_help_heading = "Treatment of a height map, in this order")]
 pub(crate) struct TreatmentKeys {
-    /// Keep a part: square (the largest in the middle), 512, 512x256, or 512x256+100+50
+    /// Keep a part: measured, square (the largest in the middle), 512, 512x256, or 512x256+100+50
     ///
-    /// 512x256+100+50 keeps 512 x 256 points, from point 100 along x and point 50 along y. If neither
+    /// measured cuts border rows and columns with more missing than measured points. 512x256+100+50 keeps 512 x 256 points, from point 100 along x and point 50 along y. If neither
     /// the file nor --cell-y gives the side along y, all treatments assume equal spacings along x and y.
     #[arg(long, value_name = "PART")]
     pub(crate) crop: Option<Crop>,
     /// Mirror along axes: x, y, z (peaks become valleys, for replicas), or x,z
     #[arg(long, value_name = "AXES", value_delimiter = ',')]
     pub(crate) flip: Vec<Flip>,
+    /// Replace isolated points farther than this many robust deviations from their neighbours [8, if omitted]
+    ///
+    /// A membrane through the points around takes their place. The deviation is that of all points from the median of
+    /// their eight neighbours.
+    #[arg(long, value_name = "SIGMA", num_args = 0..=1, default_missing_value = "8")]
+    pub(crate) despike: Option<f64>,
     /// Subtract a form, fitted to measured points by least squares: mean, plane or quadratic
     #[arg(long, value_name = "FORM")]
     pub(crate) level: Option<Level>,
     /// Fill missing points: laplace (a membrane through measured points), nearest, or lowest
     #[arg(long, value_name = "HOW")]
     pub(crate) fill: Option<Fill>,
+    /// Gaussian filter (L-filter of ISO 25178-3) that halves waves of this length (m) and removes longer ones
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub(crate) high_pass: Option<f64>,
     /// Make opposite borders meet: mirror (twice the side), window, or as-is (they meet already)
     ///
     /// mirror has four times the points on twice the side; slopes change sign at the seams. With window, heights fade
-    /// to their mean towards the borders.
+    /// to the lowest one towards the borders, where nothing touches.
     #[arg(long, value_name = "HOW", hide_possible_values = true)]
     pub(crate) periodic: Option<PeriodicName>,
     /// Fraction of a side that --periodic window fades, at each of its ends
@@ -38,7 +51,7 @@ pub(crate) struct TreatmentKeys {
     /// Gaussian filter (ISO 16610-61) that halves waves of this length (m)
     ///
     /// Shorter waves lose more. The length is four points or more.
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = length::parse, allow_hyphen_values = true)]
     pub(crate) low_pass: Option<f64>,
     /// Fewer points (means) or more (cubic) on the same area: 512, or 512x256
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
@@ -89,9 +102,11 @@ impl TreatmentKeys {
         let mut treatments = Vec::new();
         treatments.extend(self.crop.map(Treatment::Crop));
         treatments.extend(self.flip.iter().copied().map(Treatment::Flip));
+        treatments.extend(self.despike.map(|sigma| Treatment::Despike { sigma }));
         // The form is that of the measured points alone. Filled points then follow it.
         treatments.extend(self.level.map(Treatment::Level));
         treatments.extend(self.fill.map(Treatment::Fill));
+        treatments.extend(self.high_pass.map(|wavelength| Treatment::HighPass { wavelength }));
         treatments.extend(self.periodic.map(periodic).map(Treatment::Periodic));
         treatments.extend(self.low_pass.map(|wavelength| Treatment::LowPass { wavelength }));
         treatments.extend(resample.map(Treatment::Resample));

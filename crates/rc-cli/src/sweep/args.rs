@@ -6,8 +6,10 @@ use clap::{Args, Subcommand};
 use rc_sweep::{Loads, Seeds, WantedMean};
 
 use super::specs::{ListSpec, QUANTITIES, ShardSpec};
+use super::varied::Variation;
 use crate::error::CliError;
 use crate::scene::keys::Scene;
+use crate::scene::quantity::{penetrations, pressures};
 use crate::scene::values::Fraction;
 
 /// Arguments of `rc sweep`.
@@ -24,19 +26,28 @@ pub(crate) struct SweepArgs {
     pub(crate) scene_files: Vec<PathBuf>,
     /// Mean pressures (Pa): 1e4:1e6:8 (geometric), 1e4:1e6:8:linear, 1e4,1e5
     ///
-    /// first:last:count is geometric, first:last:count:linear is linear; or values with commas between them.
-    #[arg(long, value_name = "LIST", help_heading = "Sweep", allow_hyphen_values = true)]
+    /// first:last:count is geometric, first:last:count:linear is linear; or values with commas between them. Numbers
+    /// may have units, such as 10kPa:1MPa:8.
+    #[arg(long, value_name = "LIST", help_heading = "Sweep", value_parser = pressures, allow_hyphen_values = true)]
     pub(crate) pressures: Option<Loads>,
     /// Penetrations (m), in the same forms, instead of --pressures
-    #[arg(long, value_name = "LIST", help_heading = "Sweep", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LIST", help_heading = "Sweep", value_parser = penetrations, allow_hyphen_values = true)]
     pub(crate) penetrations: Option<Loads>,
     /// Seeds: 1..7 (both included), or a list with commas
     #[arg(long, value_name = "LIST", help_heading = "Sweep", allow_hyphen_values = true)]
     pub(crate) seeds: Option<Seeds>,
+    /// Values of another key, such as hardness=5MPa,10MPa; may be repeated
+    ///
+    /// Each row has a column with the name of the key. Several keys give all combinations. Numbers without units may be
+    /// a range, such as layer-thickness=1e-5:1e-3:8.
+    #[arg(long, value_name = "KEY=LIST", help_heading = "Sweep")]
+    pub(crate) vary: Vec<Variation>,
     /// Keep a result folder for each row: rows/0001 and so on
     #[arg(long, help_heading = "Sweep")]
     pub(crate) fields: bool,
     /// Continue the sweep in --out, or start it
+    ///
+    /// More loads, seeds and variations may be added: rows that exist are kept.
     #[arg(long, help_heading = "Sweep")]
     pub(crate) resume: bool,
     /// Solve part i of n; auto: the part of this task of a job array

@@ -17,10 +17,12 @@ mod results;
 mod rows;
 mod specs;
 mod surfaces;
+mod varied;
 
 pub use map_mark::MapMark;
 pub(crate) use mean::MEAN_FILE;
 pub use planned::{SweepLists, plan};
+pub use varied::Variation;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -114,8 +116,8 @@ mod tests {
 
     use super::problems::RowScenes;
     use super::*;
+    use crate::scene::loaded::LoadedSurface;
     use crate::scene::resolve::ContactSetup;
-    use crate::scene::surface::LoadedSurface;
 
     /// The scenes of a sweep whose first row does not converge, and whose other rows are refused.
     struct FirstRowHasOneIteration<'a>(&'a Surfaces);

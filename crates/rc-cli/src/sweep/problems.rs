@@ -10,8 +10,8 @@ use rc_sweep::memory::Budget;
 use rc_sweep::{Row, RowProblem, RowProblems, SolvedRow};
 
 use crate::error::CliError;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve::ContactSetup;
-use crate::scene::surface::LoadedSurface;
 use crate::solve::solved::{ProblemSetup, Solved};
 
 /// Scenes with the surface and the contact of each row.

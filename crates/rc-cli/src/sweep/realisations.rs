@@ -9,8 +9,8 @@ use super::results::{self, Results};
 use super::surfaces::SweptSurface;
 use crate::error::CliError;
 use crate::scene::keys::SurfaceKeys;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve::{self, ContactSetup};
-use crate::scene::surface::LoadedSurface;
 use crate::scene::values::GridSpec;
 
 /// The realisations of a surface.

@@ -10,7 +10,7 @@ use super::doubts::Doubts;
 use super::problems::SceneContact;
 use crate::error::CliError;
 use crate::run::stop::Stop;
-use crate::scene::surface::LoadedSurface;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::time_limit::TimeLimit;
 
 /// What the results of all rows have in common.

@@ -6,8 +6,8 @@ use super::problems::{RowScenes, SceneContact, SceneProblems};
 use super::results::{self, Results};
 use super::surfaces::Surfaces;
 use crate::error::CliError;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve::ContactSetup;
-use crate::scene::surface::LoadedSurface;
 
 impl RowScenes<SweepRow> for Surfaces {
     fn load(&self, row: &SweepRow) -> Result<LoadedSurface, CliError> {

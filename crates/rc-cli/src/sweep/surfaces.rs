@@ -4,12 +4,12 @@
 
 use std::path::{Path, PathBuf};
 
-use rc_core::Boundary;
 use rc_sweep::{ControlKind, FileMark, Loads, MAX_ROWS, PlannedSurface, Seeds, SweepPlan, SweepRow};
 use serde_json::json;
 
 use super::args::SweepArgs;
 use super::map_mark::MapMark;
+use super::varied::Varied;
 use crate::error::CliError;
 use crate::files::names::SCENE_FILE;
 use crate::run::threads;
@@ -24,6 +24,8 @@ use crate::solve::memory_factor;
 pub(super) struct SweptSurface {
     /// Name of the scene, which is its file's name without folder and extension.
     scene: String,
+    /// Values of the keys that are varied.
+    varied: Varied,
     /// Seed; `None` for a surface from a file.
     seed: Option<u64>,
     pub(super) setup: SurfaceSetup,
@@ -59,21 +61,24 @@ impl Surfaces {
         let run = scenes.first().map(|(_, scene)| scene.run.clone()).unwrap_or_default();
         // Files of waves are read with these threads.
         let threads = threads::start(run.threads)?;
+        let n_scenes = scenes.len();
+        let scenes = varied(args, scenes)?;
         let control = control(args, &scenes)?;
         let mut surfaces = Vec::new();
-        for (name, scene) in &scenes {
+        for (name, values, scene) in &scenes {
             let loads = loads(args, control, &scene.contact)?;
-            check_rows(scenes.len(), args.seeds.as_ref(), loads.len())?;
+            check_rows(scenes.len(), args.seeds.as_ref(), loads.len().max(1))?;
             // One scene alone needs no name.
             let in_scene = |error| match error {
-                CliError::Input(message) if scenes.len() > 1 => CliError::Input(format!("scene {name}: {message}")),
+                CliError::Input(message) if n_scenes > 1 => CliError::Input(format!("scene {name}: {message}")),
                 other => other,
             };
             for keys in seeded(args.seeds.as_ref(), name, scene)? {
-                surfaces.push(SweptSurface::new(name, keys, control, &loads).map_err(in_scene)?);
+                let surface = SweptSurface::new(name, keys, control, &loads).map_err(in_scene)?;
+                surfaces.push(surface.with(values.clone()));
             }
         }
-        Ok(Self { control, all: surfaces, n_scenes: scenes.len(), keeps_fields: args.fields, run, threads })
+        Ok(Self { control, all: surfaces, n_scenes, keeps_fields: args.fields, run, threads })
     }
 
     /// The plan of the sweep.
@@ -140,6 +145,11 @@ impl SweptSurface {
         memory_factor(&self.contact)
     }
 
+    /// The surface with these values of varied keys.
+    pub(super) fn with(self, varied: Varied) -> Self {
+        Self { varied, ..self }
+    }
+
     /// Checks the keys of `scene` under the first load. The loads share all other keys.
     pub(super) fn new(name: &str, scene: Scene, control: ControlKind, loads: &[f64]) -> Result<Self, CliError> {
         resolve::check_size_and_material(&scene.surface, &scene.contact)?;
@@ -163,18 +173,22 @@ impl SweptSurface {
     }
 
     fn on(
-        mut setup: SurfaceSetup,
+        setup: SurfaceSetup,
         name: &str,
         contact: &ContactKeys,
         (control, loads): (ControlKind, &[f64]),
     ) -> Result<Self, CliError> {
         let seed =
             setup.keys.seed.filter(|_| setup.keys.is_realisation() || matches!(setup.source, Source::Random { .. }));
+        let loads = match contact.force {
+            Some(force) if loads.is_empty() => vec![resolve::mean_pressure(force, setup.cell)?],
+            _ => loads.to_vec(),
+        };
         let keys = with_load(control, contact, loads.first().copied());
         let contact = resolve::contact(keys, setup.cell)?;
-        setup.may_be_flat = contact.boundary == Boundary::Free;
+        let setup = setup.bounded(contact.boundary)?;
         let contact = with_load(control, &contact.keys, None);
-        Ok(Self { scene: name.to_owned(), seed, setup, contact, loads: loads.to_vec(), held: None })
+        Ok(Self { scene: name.to_owned(), varied: Varied::new(), seed, setup, contact, loads, held: None })
     }
 
     /// The contact under `load`, ready to be solved.
@@ -200,7 +214,7 @@ impl SweptSurface {
     pub(super) fn planned(&self) -> Result<PlannedSurface, CliError> {
         let mut surface = self.setup.keys.clone();
         let map = match &self.setup.source {
-            Source::Random { .. } => None,
+            Source::Random { .. } | Source::Shape { .. } => None,
             Source::File { path, .. } => {
                 surface.heights = path.file_name().map(Into::into);
                 Some(self.held.map_or_else(|| FileMark::of(path), Ok)?)
@@ -219,13 +233,22 @@ impl SweptSurface {
                 Some(FileMark::of(path)?)
             }
         };
+        let added = match &self.setup.keys.add {
+            None => None,
+            Some(path) => {
+                surface.add = path.file_name().map(Into::into);
+                Some(FileMark::of(path)?)
+            }
+        };
         Ok(PlannedSurface {
             scene: self.scene.clone(),
+            varied: self.varied.clone(),
             seed: self.seed,
             surface: json!(surface),
             contact: json!(self.contact),
             loads: self.loads.clone(),
             map,
+            added,
         })
     }
 }
@@ -236,7 +259,7 @@ fn with_load(control: ControlKind, keys: &ContactKeys, value: Option<f64>) -> Co
         ControlKind::Pressure => (value, None),
         ControlKind::Penetration => (None, value),
     };
-    ContactKeys { pressure, penetration, ..keys.clone() }
+    ContactKeys { pressure, penetration, force: None, ..keys.clone() }
 }
 
 /// Refuses an unreasonable number of rows.
@@ -258,6 +281,7 @@ fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
         ("--penetrations", args.penetrations.is_some()),
         ("--pressure", contact.pressure.is_some()),
         ("--penetration", contact.penetration.is_some()),
+        ("--force", contact.force.is_some()),
     ];
     let given: Vec<&str> = given.iter().filter(|(_, given)| *given).map(|(flag, _)| *flag).collect();
     if let [first, second, ..] = given[..] {
@@ -287,6 +311,16 @@ fn scenes(args: &SweepArgs) -> Result<Vec<(String, Scene)>, CliError> {
     Ok(scenes)
 }
 
+/// The scenes with their names, in all variations.
+fn varied(args: &SweepArgs, scenes: Vec<(String, Scene)>) -> Result<Vec<(String, Varied, Scene)>, CliError> {
+    let mut all = Vec::new();
+    for (name, scene) in scenes {
+        let varied = super::varied::scenes(&args.vary, &scene)?;
+        all.extend(varied.into_iter().map(|(values, scene)| (name.clone(), values, scene)));
+    }
+    Ok(all)
+}
+
 /// The name of a scene: its file's name, or that of the folder for a folder or its `scene.toml`.
 fn name_of(path: &Path) -> String {
     let is_of_folder = path.file_name().is_some_and(|name| name == SCENE_FILE);
@@ -299,20 +333,20 @@ fn name_of(path: &Path) -> String {
 }
 
 /// The quantity of the loads, which is the same for all scenes.
-fn control(args: &SweepArgs, scenes: &[(String, Scene)]) -> Result<ControlKind, CliError> {
+fn control(args: &SweepArgs, scenes: &[(String, Varied, Scene)]) -> Result<ControlKind, CliError> {
     if args.pressures.is_some() {
         return Ok(ControlKind::Pressure);
     }
     if args.penetrations.is_some() {
         return Ok(ControlKind::Penetration);
     }
-    let of_scene = |scene: &Scene| match (scene.contact.pressure, scene.contact.penetration) {
-        (Some(_), None) => Some(ControlKind::Pressure),
-        (None, Some(_)) => Some(ControlKind::Penetration),
+    let of_scene = |Scene { contact, .. }: &Scene| match (contact.n_loads(), contact.penetration) {
+        (1, None) => Some(ControlKind::Pressure),
+        (1, Some(_)) => Some(ControlKind::Penetration),
         _ => None,
     };
     let mut found = None;
-    for (name, scene) in scenes {
+    for (name, _, scene) in scenes {
         match (of_scene(scene), found) {
             (None, _) => {
                 let message = "the loads are missing: give --pressures or --penetrations, for example 1e4:1e6:8";
@@ -332,15 +366,18 @@ fn control(args: &SweepArgs, scenes: &[(String, Scene)]) -> Result<ControlKind, 
 }
 
 /// The loads of a scene: those of the command line, or its own.
+///
+/// There are none for a force, whose mean pressure depends on the cell.
 fn loads(args: &SweepArgs, control: ControlKind, keys: &ContactKeys) -> Result<Vec<f64>, CliError> {
     let (list, own) = match control {
         ControlKind::Pressure => (&args.pressures, keys.pressure),
         ControlKind::Penetration => (&args.penetrations, keys.penetration),
     };
-    match (list, own) {
-        (Some(Loads(values)), _) => Ok(values.clone()),
-        (None, Some(value)) => Ok(vec![value]),
-        (None, None) => Err(CliError::input(format_args!("{}: must be given", control.key()))),
+    match (list, own, keys.force) {
+        (Some(Loads(values)), ..) => Ok(values.clone()),
+        (None, Some(value), _) => Ok(vec![value]),
+        (None, None, Some(_)) => Ok(Vec::new()),
+        (None, None, None) => Err(CliError::input(format_args!("{}: must be given", control.key()))),
     }
 }
 

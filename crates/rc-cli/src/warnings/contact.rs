@@ -6,10 +6,10 @@ use rc_solver::Control;
 use rc_sweep::Warning;
 use rc_sweep::WarningCode::{Coarse, Load};
 
-use super::surface::{Shape, border};
+use super::surface::{Shape, border, steep};
 use crate::scene::keys::KernelName;
+use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve::ContactSetup;
-use crate::scene::surface::LoadedSurface;
 
 /// Mean pressure in E* above which strains are not small.
 const LARGE_MEAN: f64 = 0.1;
@@ -23,7 +23,11 @@ const FEW_ELEMENTS_SPECTRAL: f64 = 2.25;
 /// All doubts that are known before the solve: about the surface, the load and the grid.
 pub(crate) fn before(surface: &LoadedSurface, contact: &ContactSetup) -> Vec<Warning> {
     let mut found = surface.warnings.clone();
-    found.extend(shape(surface, contact).warnings());
+    match surface.form {
+        // Range and slope of what the shape is added to are doubted already.
+        Some(form) => found.extend(steep(form.slope())),
+        None => found.extend(shape(surface, contact).warnings()),
+    }
     if let (Some((map, _)), Boundary::Periodic) = (surface.map(), contact.boundary) {
         found.extend(border(rc_heights::BorderStep::of(map)));
     }

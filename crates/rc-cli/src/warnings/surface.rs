@@ -3,12 +3,14 @@
 use std::path::Path;
 
 use rc_core::quantity::{count, digits, engineering};
+use rc_core::{Field, PeriodicCell};
+use rc_fractal::height_and_slope_of_grid;
 use rc_heights::suspicion::{Counter, Suspicions};
 use rc_heights::{BorderStep, HeightMap};
 use rc_sweep::Warning;
 use rc_sweep::WarningCode::{Assumed, Border, Columns, Counter as CounterCode, Marks, Missing, Slope, Spikes, Units};
 
-use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SUMMARY_FILE};
+use crate::files::beside;
 
 /// rms slope above which a surface is hardly a rough one.
 ///
@@ -56,6 +58,13 @@ impl Shape {
         Self { rms_slope, range: RANGE_OF_WAVES * rms_height, sides }
     }
 
+    /// The shape of heights (m) in a cell, which continue across its borders.
+    pub(crate) fn of_heights(heights: &Field, cell: PeriodicCell) -> Self {
+        // Slopes are per λ.
+        let [_, slope] = height_and_slope_of_grid(heights);
+        Self { rms_slope: slope / cell.side(), range: heights.max() - heights.min(), sides: cell.sides() }
+    }
+
     /// Doubts about units and slopes.
     pub(crate) fn warnings(self) -> Vec<Warning> {
         let (slope, shorter) = (digits(self.rms_slope, 3), self.sides[0].min(self.sides[1]));
@@ -72,15 +81,21 @@ impl Shape {
             );
             found.push(Warning::new(Units, text));
         }
-        if self.rms_slope > SMALL_SLOPE {
-            let text = format!(
-                "an rms slope of {slope} is too steep for the theory, which neglects squares of slopes; expect errors of \
-                 some 10 %, or remove short waves (rc surface --low-pass)"
-            );
-            found.push(Warning::new(Slope, text));
-        }
+        found.extend(steep(self.rms_slope));
         found
     }
+}
+
+/// The doubt about a slope that the theory takes for small.
+pub(crate) fn steep(rms_slope: f64) -> Option<Warning> {
+    let text = || {
+        format!(
+            "an rms slope of {} is too steep for the theory, which neglects squares of slopes; expect errors of \
+             some 10 %, or remove short waves (rc surface --low-pass)",
+            digits(rms_slope, 3)
+        )
+    };
+    (rms_slope > SMALL_SLOPE).then(|| Warning::new(Slope, text()))
 }
 
 /// Doubts about the values of a map in metres, which may have missing points.
@@ -113,7 +128,7 @@ pub(crate) fn of_map(map: &HeightMap) -> Vec<Warning> {
     if let Some(spikes) = spikes {
         let text = format!(
             "{} {} far from all neighbours, by up to {}; if measured wrongly, they carry a light load alone, so remove them \
-             before",
+             before (rc surface --despike)",
             count(spikes.count, "point"),
             if spikes.count == 1 { "stands" } else { "stand" },
             engineering(spikes.largest, "m")
@@ -150,13 +165,7 @@ pub(crate) fn of_record(path: &Path) -> Option<Warning> {
     struct Record {
         warnings: Vec<Warning>,
     }
-    let folder = path.parent().filter(|_| path.file_name().is_some_and(|name| name == HEIGHTS_FILE))?;
-    let of_file = |name: &str| {
-        let text = std::fs::read_to_string(folder.join(name)).ok()?;
-        let Record { warnings } = serde_json::from_str(&text).ok()?;
-        warnings.into_iter().find(|warning| warning.code == Missing)
-    };
-    [RECORD_FILE, SUMMARY_FILE].into_iter().find_map(of_file)
+    beside::records(path).find_map(|Record { warnings }| warnings.into_iter().find(|warning| warning.code == Missing))
 }
 
 /// A doubt about a map that is solved as if it repeated itself.

@@ -38,7 +38,8 @@ fn bad_values_of_the_surface_are_refused_with_their_key() {
         (&["--hurst", "2"], "hurst"),
         (&["--roll-off", "9"], "roll_off"),
         (&["--seed", "-1"], "'-1' for '--seed <SEED>': must be a whole number, not negative"),
-        (&["--rms", "x"], "'x' for '--rms <M>': must be a number, such as 4.5e5"),
+        (&["--rms", "x"], "'x' for '--rms <M>': must be a length in m, or with a unit such as 25um, not 'x'"),
+        (&["--hurst", "x"], "'x' for '--hurst <H>': must be a number, such as 4.5e5"),
         (&["--seed", "18446744073709551615"], "seed"),
         (&["--rms", "1", "--c0", "1"], "alternatives"),
     ];
@@ -227,14 +228,18 @@ fn a_wrong_value_in_a_scene_file_is_named_with_its_line_and_key() {
     let place = Place::new();
     let cases = [
         ("waves = 8.5", "line 2: waves: must be a whole number of at least 0, not 8.5"),
-        ("rms = \"1e-6\"", "line 2: rms: must be a number without quotes, not \"1e-6\""),
+        (
+            "rms = \"1e-6x\"",
+            "line 2: rms: must be a length in m, or with a unit such as 25um, not '1e-6x'; 'x' is not a known unit",
+        ),
+        ("hurst = \"0.8\"", "line 2: hurst: must be a number without quotes, not \"0.8\""),
         (
             "method = \"addaptive\"",
             "line 2: method: must be 'adaptive' or 'uniform' or 'gauss-seidel', not 'addaptive'",
         ),
         ("kernel = 3", "line 2: kernel: must be text in quotes"),
         ("heights = 3", "line 2: heights: must be text in quotes, not 3"),
-        ("rms = [1e-6]", "line 2: rms: must be a number without quotes, not a list"),
+        ("rms = [1e-6]", "line 2: rms: must be a length in m, or with a unit such as 25um, not a list"),
         ("area_error = \"x\"", "line 2: area_error: a fraction is a number above 0 and below 1"),
         ("threads = \"a, expected b\"", "line 2: threads: must be a whole number of at least 0, not \"a, expected b\""),
     ];
@@ -282,7 +287,7 @@ fn remedies_are_possible() {
     let cases: &[(&[&str], &str)] = &[
         (&["man"], "required argument is missing: --out <DIR>"),
         (&["sweep", "merge"], "required arguments are missing: --out <DIR>, <DIR>..."),
-        (&["prepare"], "unrecognized subcommand 'prepare'; rc --help lists the commands"),
+        (&["squeeze"], "unrecognized subcommand 'squeeze'; rc --help lists the commands"),
         (&["surface", "--method", "uniform"], "unexpected argument '--method' found; --help lists the flags"),
         (&["solve", "--pressure", "1e5", "--grid", "64x"], "512x256, not '64x'"),
         (

@@ -118,6 +118,62 @@ fn a_twin_has_the_heights_of_the_map_and_another_order() {
     assert_eq!(place.json("larger/surface.json")["grid"], serde_json::json!([96, 80]));
 }
 
+/// A shape and another body are added to measured surfaces as to any other, and the folder repeats the sum.
+#[test]
+fn shapes_and_other_bodies_are_added_to_measured_surfaces() {
+    let place = Place::new();
+    place.write("psd.txt", psd(1.0));
+    place.write("map.npy", map());
+    place.write(
+        "profile.txt",
+        lines(200, |i| format!("{:e} {:e}\n", 1e-6 * f64::from(i), 1e-6 * f64::from(i * i).sin())),
+    );
+    let run = |words: String| assert_solved(&place.run(&words.split(' ').collect::<Vec<_>>()));
+    run("surface --waves 4 --grid 64 --rms 1um --cell 10mm --quiet --out waves.npy".into());
+    let cases = [
+        ("--psd psd.txt --cell 10mm --grid 64", "waves.npy", [64, 64], 0.01),
+        ("--like profile.txt --unit m --grid 64", "waves.npy", [64, 64], 2e-4),
+        ("--like map.npy --cell 10mm --seed 3", "map.npy", [48, 40], 0.01),
+    ];
+    for (surface, other, [nx, ny], side) in cases {
+        let heights = |added: &str| {
+            run(format!("surface {surface}{added} --quiet --out heights.npy"));
+            values(&place.bytes("heights.npy"))
+        };
+        let (bare, on_sphere) = (heights(""), heights(" --shape sphere --radius 2m"));
+        let (of_two, other_body) = (heights(&format!(" --add {other}")), values(&place.bytes(other)));
+        for i in 0..nx * ny {
+            let (ix, iy) = (i % nx, i / nx);
+            let at = |index: usize, n: usize| (index as f64 + 0.5 - 0.5 * n as f64) * side / nx as f64;
+            let sphere = -(at(ix, nx).powi(2) + at(iy, ny).powi(2)) / 4.0;
+            assert!((on_sphere[i] - bare[i] - sphere).abs() < 1e-15, "{surface}: {ix}, {iy}");
+            let mirrored = other_body[iy * nx + nx - 1 - ix];
+            assert!((of_two[i] - bare[i] - mirrored).abs() < 1e-15, "{surface}: {ix}, {iy}");
+        }
+        for added in ["--shape sphere --radius 2m".to_owned(), format!("--add {other} --shape flat")] {
+            run(format!("solve {surface} {added} --boundary free --e-star 1GPa --force 1mN --quiet --out sum"));
+            run("solve sum --quiet --out again".into());
+            assert!(place.bytes("sum/pressure.npy") == place.bytes("again/pressure.npy"), "{surface} {added}");
+        }
+    }
+}
+
+#[test]
+fn the_source_of_a_twin_is_its_map() {
+    let place = Place::new();
+    place.write("map.npy", map());
+    let twin = ["solve", "--like", "map.npy", "--pressure", "1e5", "--seed", "4", "--quiet", "--out", "twin"];
+    assert_solved(&place.run(&[&twin[..], &CELL, &MATERIAL].concat()));
+    let source = serde_json::json!({ "file": "map.npy", "channel": null, "treatments": ["twin, seed 4"] });
+    assert_eq!(place.json("twin/summary.json")["source"], source);
+    assert_solved(&place.run(&["solve", "twin", "--quiet", "--out", "again"]));
+    assert_eq!(place.json("again/summary.json")["source"], source);
+    // A twin of a twin.
+    assert_solved(&place.run(&["surface", "--like", "twin", "--quiet", "--out", "second"]));
+    let treatments = &place.json("second/surface.json")["source"]["treatments"];
+    assert_eq!(treatments, &serde_json::json!(["twin, seed 4", "twin, seed 1"]));
+}
+
 #[test]
 fn sweeps_take_seeds_of_twins_and_of_spectra() {
     let place = Place::new();

@@ -128,7 +128,7 @@ fn settings_that_differ_are_named() {
     assert_refused(&run("1e5,2e5", &[]), "s: holds a sweep already; continue it with --resume");
     let cases: &[(&str, &[&str], &str)] = &[
         ("1e5,3e5", &[], "load 2 of surface 1 is 200000.0 in the folder and 300000.0 now"),
-        ("1e5,2e5", &["--seeds", "1..2"], "the number of surfaces is 1 in the folder and 2 now"),
+        ("1e5,2e5", &["--seeds", "2..3"], "the number of surfaces is 1 in the folder and 2 now"),
         ("1e5,2e5", &["--seed", "2"], "seed of surface 1 is 1 in the folder and 2 now"),
         (
             "1e5,2e5",

@@ -11,7 +11,7 @@ mod values;
 use rc_core::{Field, Grid};
 
 pub use near::SPIKE;
-pub use spikes::{Spikes, spikes};
+pub use spikes::{Spikes, spike_points, spikes};
 pub use values::{Counter, Mark, counter, marks};
 
 /// Most columns or rows of a map that looks like a table of something else.

@@ -8,7 +8,7 @@ use super::medians::median;
 /// A normal distribution exceeds six with a probability of 2e-9, less than once in the largest measured maps.
 pub const SPIKE: f64 = 6.0;
 
-/// Part of [`SPIKE`] from which on a point is looked at. Other points of the same spike bias the median.
+/// Part of the threshold from which on a point is looked at. Other points of the same spike bias the median.
 pub(super) const CANDIDATE: f64 = 0.6;
 
 /// Deviation of a spike relative to the step from the first ring of neighbours to the second.
@@ -40,8 +40,8 @@ impl<'a> Near<'a> {
         Self { map, at, slope: map.local_slope(at) }
     }
 
-    /// The height of a point above what its neighbours say, if it is a spike.
-    pub(super) fn spike(&self, deviation: f64) -> Option<f64> {
+    /// The height of a point above what its neighbours say, if it is a spike of more than `threshold`.
+    pub(super) fn spike(&self, threshold: f64) -> Option<f64> {
         let group = self.group()?;
         let mut first = self.ring(1, &group);
         let complete = first.len() + group.len() > NEIGHBOURS.len();
@@ -54,7 +54,7 @@ impl<'a> Near<'a> {
                 return None;
             }
         }
-        let is_far = height.abs() > SPIKE * deviation && height.abs() > STEEP * step.abs();
+        let is_far = height.abs() > threshold && height.abs() > STEEP * step.abs();
         let mut is_clear = || {
             for level in &mut first {
                 *level = (*level - base).abs();

@@ -42,12 +42,43 @@ impl Spikes {
 /// Points at the border of a `periodic` map have neighbours at the other end.
 #[must_use]
 pub fn spikes(heights: &Field, periodic: bool) -> Option<Spikes> {
+    let (map, deviation) = usual(heights, periodic)?;
+    let mut found = Spikes { count: 0, largest: 0.0, deviation, at: Vec::new() };
+    for ([x, y], height) in rare(&map, SPIKE * deviation) {
+        found.count += 1;
+        if height.abs() > found.largest.abs() {
+            found.largest = height;
+        }
+        if found.at.len() < Spikes::MOST_PLACES {
+            found.at.push((x as usize, y as usize));
+        }
+    }
+    (found.count > 0).then_some(found)
+}
+
+/// Indices of the spikes of a map that is not periodic, which deviate by more than `sigma` robust standard deviations.
+///
+/// [`spikes`] has a `sigma` of [`SPIKE`].
+#[must_use]
+pub fn spike_points(heights: &Field, sigma: f64) -> Vec<usize> {
+    let Some((map, deviation)) = usual(heights, false) else { return Vec::new() };
+    let index = |[x, y]: [isize; 2]| heights.grid().index(x as usize, y as usize);
+    rare(&map, sigma * deviation).into_iter().map(|(at, _)| index(at)).collect()
+}
+
+/// A map with the usual deviation of its points. `None` if no point can be a spike.
+fn usual(heights: &Field, periodic: bool) -> Option<(Map<'_>, f64)> {
     let map = Map::new(heights, periodic)?;
     let deviation = map.usual_deviation()?;
+    Some((map, deviation))
+}
+
+/// Places and heights of the spikes that deviate by more than `threshold`, row by row.
+fn rare(map: &Map<'_>, threshold: f64) -> Vec<([isize; 2], f64)> {
     let (mut alone, mut others) = (Vec::<([isize; 2], f64)>::new(), Vec::new());
-    map.each_beyond(CANDIDATE * SPIKE * deviation, |x, y| {
-        let near = Near::new(&map, [x, y]);
-        match near.spike(deviation) {
+    map.each_beyond(CANDIDATE * threshold, |x, y| {
+        let near = Near::new(map, [x, y]);
+        match near.spike(threshold) {
             Some(height) => alone.push(([x, y], height)),
             None if NEIGHBOURS.iter().all(|[dx, dy]| map.at(x + dx, y + dy).is_finite()) => {
                 others.push(([x, y], near.height().abs()));
@@ -61,16 +92,5 @@ pub fn spikes(heights: &Field, periodic: bool) -> Option<Spikes> {
     let mut others: Vec<f64> = others.into_iter().filter(|(at, _)| !is_beside(*at)).map(|(_, other)| other).collect();
     others.sort_unstable_by(f64::total_cmp);
     let as_much = |height: f64| others.len() - others.partition_point(|other| *other < AS_MUCH * height.abs());
-    let is_rare = |height: f64| as_much(height) <= places.len();
-    let mut found = Spikes { count: 0, largest: 0.0, deviation, at: Vec::new() };
-    for ([x, y], height) in alone.into_iter().filter(|(_, height)| is_rare(*height)) {
-        found.count += 1;
-        if height.abs() > found.largest.abs() {
-            found.largest = height;
-        }
-        if found.at.len() < Spikes::MOST_PLACES {
-            found.at.push((x as usize, y as usize));
-        }
-    }
-    (found.count > 0).then_some(found)
+    alone.into_iter().filter(|(_, height)| as_much(*height) <= places.len()).collect()
 }

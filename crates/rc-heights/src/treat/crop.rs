@@ -14,10 +14,12 @@ impl FromStr for Crop {
     fn from_str(text: &str) -> Result<Self, TreatError> {
         let unknown = || TreatError::Unknown {
             found: text.to_owned(),
-            expected: "a part of a map: square, or numbers of points such as 512, 512x256 or 512x256+100+50",
+            expected: "a part of a map: measured, square, or numbers of points such as 512, 512x256 or 512x256+100+50",
         };
-        if text == "square" {
-            return Ok(Self::Square);
+        match text {
+            "measured" => return Ok(Self::Measured),
+            "square" => return Ok(Self::Square),
+            _ => {}
         }
         let mut words = text.split('+');
         let size = words.next().unwrap_or_default();
@@ -36,8 +38,11 @@ impl FromStr for Crop {
 pub const SAME_LENGTH: f64 = 1e-3;
 
 /// First point and grid of the part of `grid` that is kept. Points have distances of `spacing`.
+///
+/// The measured rectangle is at most the whole grid, which is returned for it.
 pub(super) fn part(grid: Grid, spacing: [f64; 2], crop: Crop) -> Result<([usize; 2], Grid), TreatError> {
     let (nx, ny, from) = match crop {
+        Crop::Measured => return Ok(([0, 0], grid)),
         Crop::Points { nx, ny, from } => (nx, ny, from),
         Crop::Square => {
             let [nx, ny] = square(grid, spacing).ok_or(TreatError::NoSquare { grid, spacing })?;
@@ -64,9 +69,40 @@ fn square(grid: Grid, [dx, dy]: [f64; 2]) -> Option<[usize; 2]> {
     })
 }
 
+/// First point and grid of the measured rectangle.
+///
+/// The border row or column with the largest missing part is cut, as long as that is more than half of it. A map
+/// without measured points is kept as a whole.
+fn measured(heights: &Field) -> ([usize; 2], Grid) {
+    let whole = heights.grid();
+    let (mut x, mut y) = (0..whole.nx(), 0..whole.ny());
+    let is_missing = |ix: usize, iy: usize| heights.at(ix, iy).is_nan();
+    loop {
+        let of_row = |iy: usize| x.clone().filter(|ix| is_missing(*ix, iy)).count() as f64 / x.len() as f64;
+        let of_column = |ix: usize| y.clone().filter(|iy| is_missing(ix, *iy)).count() as f64 / y.len() as f64;
+        let borders = [of_row(y.start), of_row(y.end - 1), of_column(x.start), of_column(x.end - 1)];
+        let most = borders.iter().copied().fold(0.0, f64::max);
+        if most <= 0.5 {
+            let grid = Grid::new(x.len(), y.len()).expect("a part of a grid");
+            return ([x.start, y.start], grid);
+        }
+        match borders.iter().position(|missing| *missing >= most) {
+            Some(0 | 1) if y.len() == 1 => return ([0, 0], whole),
+            Some(2 | 3) if x.len() == 1 => return ([0, 0], whole),
+            Some(0) => y.start += 1,
+            Some(1) => y.end -= 1,
+            Some(2) => x.start += 1,
+            _ => x.end -= 1,
+        }
+    }
+}
+
 pub(super) fn crop(map: &HeightMap, crop: Crop) -> Result<HeightMap, TreatError> {
     let [dx, dy] = map.spacing();
-    let ([x, y], grid) = part(map.heights.grid(), [dx, dy], crop)?;
+    let ([x, y], grid) = match crop {
+        Crop::Measured => measured(&map.heights),
+        _ => part(map.heights.grid(), [dx, dy], crop)?,
+    };
     let (nx, ny) = (grid.nx(), grid.ny());
     let values = (y..y + ny).flat_map(|iy| &map.heights.row(iy)[x..x + nx]).copied().collect();
     let heights = Field::new(grid, values).expect("as many values as points");

@@ -69,14 +69,24 @@ pub enum TreatError {
         points: usize,
     },
     /// The wavelength is outside the range of the map.
-    #[error("low_pass: must be from {least:e} (four points) to {most:e} (the shorter side), not {wavelength:e}")]
+    #[error("{filter}: must be from {least:e} (four points) to {most:e} (the shorter side), not {wavelength:e}")]
     Wavelength {
+        /// The filter, `low_pass` or `high_pass`.
+        filter: &'static str,
         /// The wavelength as given.
         wavelength: f64,
         /// Minimum wavelength, four points.
         least: f64,
         /// Maximum wavelength, the shorter side.
         most: f64,
+    },
+    /// So few deviations make no spike.
+    #[error("despike: must be {least} or more robust standard deviations, not {sigma}; 8 is usual")]
+    Sigma {
+        /// The number of deviations as given.
+        sigma: f64,
+        /// The least number.
+        least: f64,
     },
     /// The window leaves no part of the map unchanged.
     #[error(

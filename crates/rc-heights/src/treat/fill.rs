@@ -26,6 +26,9 @@ const MOST_STEPS: usize = 20_000;
 /// Residual, relative to the first residual, at which the iteration ends.
 const TOLERANCE: f64 = 1e-8;
 
+/// Number of a point that is missing.
+const MISSING: u32 = u32::MAX - 1;
+
 /// The filled map, and a remark about the result.
 ///
 /// A map without a measured point is returned unchanged.
@@ -52,6 +55,26 @@ pub(super) fn fill(mut map: HeightMap, how: Fill) -> (HeightMap, String) {
         }
     }
     (map, note)
+}
+
+/// Replaces the heights of `points` by a membrane through the measured points around them.
+///
+/// Missing points stay missing. A point without a measured one around it keeps its height.
+pub(super) fn replace(map: &mut HeightMap, points: &[usize]) {
+    let (nx, ny) = (map.heights.grid().nx(), map.heights.grid().ny());
+    let values = map.heights.values_mut();
+    let before: Vec<f64> = points.iter().map(|i| std::mem::replace(&mut values[*i], f64::NAN)).collect();
+    let mean_around = |i: &usize| {
+        let there = around(*i, nx, ny).map(|j| values[j]).filter(|height| !height.is_nan());
+        let (sum, n) = there.fold((0.0, 0), |(sum, n), height| (sum + height, n + 1));
+        sum / f64::from(n)
+    };
+    let starts: Vec<f64> = points.iter().map(mean_around).collect();
+    for ((i, start), before) in points.iter().zip(&starts).zip(before) {
+        values[*i] = if start.is_nan() { before } else { *start };
+    }
+    let replaced = points.iter().zip(&starts).filter(|(_, start)| !start.is_nan());
+    laplace(map, &replaced.map(|(i, _)| *i).collect::<Vec<_>>(), MOST_STEPS);
 }
 
 /// The points beside point `i`. Neighbours along x are first.
@@ -101,24 +124,26 @@ fn around(i: usize, nx: usize, ny: usize) -> impl Iterator<Item = usize> {
 
 /// Solves Σ w (h_i - h_j) = 0 over the neighbours of each hole by conjugate gradients.
 ///
-/// The iteration starts from the present heights of the holes and has at most `most` steps. Returns the ratio of the
+/// Missing points are not neighbours. The iteration starts from the present heights of the holes and has at most `most`
+/// steps. Returns the ratio of the
 /// last to the first residual.
 fn laplace(map: &mut HeightMap, holes: &[usize], most: usize) -> f64 {
     let (nx, ny) = (map.heights.grid().nx(), map.heights.grid().ny());
     let [dx, dy] = map.spacing();
     let weight = |along_x: bool| if along_x { dy / dx } else { dx / dy };
     let values = map.heights.values_mut();
-    let mut number = vec![u32::MAX; values.len()];
+    let mut number: Vec<u32> = values.iter().map(|v| if v.is_nan() { MISSING } else { u32::MAX }).collect();
     holes.iter().enumerate().for_each(|(n, i)| number[*i] = n as u32);
+    let beside = |i: usize| neighbours(i, nx, ny).filter(|(j, _)| number[*j] != MISSING);
     // Differences to neighbours. For a direction, measured points have the value 0.
     let residual = |values: &[f64]| -> Vec<f64> {
-        let at = |i: &usize| neighbours(*i, nx, ny).map(|(j, x)| weight(x) * (values[j] - values[*i])).sum();
+        let at = |i: &usize| beside(*i).map(|(j, x)| weight(x) * (values[j] - values[*i])).sum();
         holes.iter().map(at).collect()
     };
     let apply = |p: &[f64]| -> Vec<f64> {
         let at = |(n, i): (usize, &usize)| {
             let of = |j: usize| p.get(number[j] as usize).copied().unwrap_or(0.0);
-            neighbours(*i, nx, ny).map(|(j, x)| weight(x) * (p[n] - of(j))).sum()
+            beside(*i).map(|(j, x)| weight(x) * (p[n] - of(j))).sum()
         };
         holes.iter().enumerate().map(at).collect()
     };

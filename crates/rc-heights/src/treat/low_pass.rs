@@ -1,7 +1,9 @@
 //! The Gaussian filter of ISO 16610-61.
 
+use rc_core::Field;
+
 use super::error::TreatError;
-use super::stencil::{Edges, Taps, along_x, along_y};
+use super::stencil::{Edges, Taps, about_x, along_y};
 use crate::HeightMap;
 
 /// Distance from the peak, in widths, at which the weights are cut off: exp(-π 2.5²) = 3e-9.
@@ -17,17 +19,27 @@ const LEAST_POINTS: f64 = 4.0;
 ///
 /// A wave of length λ keeps half of its amplitude.
 pub(super) fn low_pass(mut map: HeightMap, wavelength: f64, edges: Edges) -> Result<HeightMap, TreatError> {
+    map.heights = gaussian(&map, wavelength, edges, "low_pass")?;
+    Ok(map)
+}
+
+/// The heights that the filter keeps. An error names the `filter`.
+pub(super) fn gaussian(
+    map: &HeightMap,
+    wavelength: f64,
+    edges: Edges,
+    filter: &'static str,
+) -> Result<Field, TreatError> {
     let (grid, spacing) = (map.heights.grid(), map.spacing());
     let sides = [spacing[0] * grid.nx() as f64, spacing[1] * grid.ny() as f64];
     let (least, most) = (LEAST_POINTS * spacing[0].max(spacing[1]), sides[0].min(sides[1]));
     if !(least..=most).contains(&wavelength) {
-        return Err(TreatError::Wavelength { wavelength, least, most });
+        return Err(TreatError::Wavelength { filter, wavelength, least, most });
     }
     let [x, y] = spacing.map(|step| weights(wavelength / step));
-    let taps = |weights: &'_ [f64], i: usize| i as i64 - (weights.len() / 2) as i64;
-    let filtered = along_x(&map.heights, grid.nx(), edges, |i| Taps { first: taps(&x, i), weights: &x });
-    map.heights = along_y(&filtered, grid.ny(), edges, |i| Taps { first: taps(&y, i), weights: &y });
-    Ok(map)
+    let filtered = about_x(&map.heights, &x, edges);
+    let first = |i: usize| i as i64 - (y.len() / 2) as i64;
+    Ok(along_y(&filtered, grid.ny(), edges, |i| Taps { first: first(i), weights: &y }))
 }
 
 /// Weights for a wavelength in points, with sum 1.

@@ -3,9 +3,11 @@
 //! They are pure functions from map to map, with a record of what each of them changes.
 
 mod crop;
+mod despike;
 mod error;
 mod fill;
 mod flip;
+mod high_pass;
 mod level;
 mod low_pass;
 mod moments;
@@ -20,6 +22,7 @@ use rc_core::Grid;
 use crate::{BorderStep, HeightMap};
 
 pub use crop::SAME_LENGTH;
+use despike::Removed;
 pub use error::TreatError;
 use moments::rms_height;
 pub(crate) use moments::{mean, rms_slope};
@@ -36,6 +39,10 @@ pub struct Effect {
     pub grid: Grid,
     /// Sides of the rectangle.
     pub sides: Option<[f64; 2]>,
+    /// Number of points that the treatment cut, replaced, filled or moved. Copies of points are none.
+    pub changed: usize,
+    /// The points that [`Treatment::Despike`] replaced: index, and height above the new one.
+    pub removed: Vec<(usize, f64)>,
     /// Number of missing points.
     pub missing: usize,
     /// rms height about the mean of the measured points.
@@ -55,6 +62,8 @@ impl Effect {
             treatment: treatment.to_string(),
             grid: map.heights.grid(),
             sides: map.sides,
+            changed: 0,
+            removed: Vec::new(),
             missing,
             rms_height: rms_height(&map.heights),
             rms_slope: rms_slope(&map.heights, map.spacing()),
@@ -74,19 +83,29 @@ pub fn apply(map: HeightMap, treatments: &[Treatment]) -> Result<(HeightMap, Vec
     let (mut map, mut edges) = (map, Edges::Mirrored);
     let mut effects = Vec::with_capacity(treatments.len());
     for treatment in treatments {
-        let note;
-        (map, note) = one(map, *treatment, edges)?;
+        let (before, missing) = (map.heights.grid().len(), map.missing());
+        let (note, removed);
+        (map, note, removed) = one(map, *treatment, edges)?;
         if matches!(treatment, Treatment::Periodic(_)) {
             edges = Edges::Periodic;
         }
-        effects.push(Effect::of(&map, &format!("{treatment}{note}")));
+        let effect = Effect::of(&map, &format!("{treatment}{note}"));
+        let changed = match treatment {
+            Treatment::Crop(_) => before - effect.grid.len(),
+            Treatment::Despike { .. } => removed.len(),
+            Treatment::Fill(_) => missing - effect.missing,
+            Treatment::Periodic(Periodic::AsIs | Periodic::Mirror) | Treatment::Repeat(_) => 0,
+            _ => effect.grid.len(),
+        };
+        effects.push(Effect { changed, removed, ..effect });
     }
     Ok((map, effects))
 }
 
 /// The grid of `map` after each treatment, without applying it.
 ///
-/// A program can compare it with its memory first. No treatment needs a larger grid internally.
+/// A program can compare it with its memory first. No treatment needs a larger grid internally. For
+/// [`Crop::Measured`], the grid is an upper bound: that of the whole map.
 ///
 /// # Errors
 /// [`TreatError`] of the first treatment whose part is not inside the map, or whose grid is not valid.
@@ -113,22 +132,36 @@ pub fn grids_after(map: &HeightMap, treatments: &[Treatment]) -> Result<Vec<Grid
     treatments.iter().map(next).collect()
 }
 
-/// The map after `treatment`, and a remark about the result.
-fn one(map: HeightMap, treatment: Treatment, edges: Edges) -> Result<(HeightMap, String), TreatError> {
+/// A treated map, a remark about the result, and the spikes that were removed.
+type Treated = (HeightMap, String, Vec<Removed>);
+
+/// The map after `treatment`.
+fn one(map: HeightMap, treatment: Treatment, edges: Edges) -> Result<Treated, TreatError> {
     let missing = map.missing();
-    let complete = matches!(treatment, Treatment::Periodic(_) | Treatment::LowPass { .. } | Treatment::Resample(_));
+    let complete = matches!(
+        treatment,
+        Treatment::Periodic(_) | Treatment::LowPass { .. } | Treatment::HighPass { .. } | Treatment::Resample(_)
+    );
     if complete && missing > 0 {
         return Err(TreatError::Missing { treatment, missing });
     }
     let treated = match treatment {
         Treatment::Crop(crop) => crop::crop(&map, crop),
         Treatment::Flip(axis) => Ok(flip::flip(map, axis)),
-        Treatment::Fill(how) => return Ok(fill::fill(map, how)),
+        Treatment::Despike { sigma } => {
+            let (map, removed) = despike::despike(map, sigma)?;
+            return Ok((map, String::new(), removed));
+        }
+        Treatment::Fill(how) => {
+            let (map, note) = fill::fill(map, how);
+            return Ok((map, note, Vec::new()));
+        }
         Treatment::Level(form) => level::level(map, form),
         Treatment::Periodic(how) => periodic::periodic(map, how),
         Treatment::LowPass { wavelength } => low_pass::low_pass(map, wavelength, edges),
+        Treatment::HighPass { wavelength } => high_pass::high_pass(map, wavelength, edges),
         Treatment::Resample(grid) => Ok(resample::resample(map, grid, edges)),
         Treatment::Repeat(times) => repeat::repeat(&map, times),
     };
-    treated.map(|map| (map, String::new()))
+    treated.map(|map| (map, String::new(), Vec::new()))
 }

@@ -11,7 +11,10 @@ pub(super) fn periodic(map: HeightMap, how: Periodic) -> Result<HeightMap, Treat
     match how {
         Periodic::AsIs => Ok(map),
         Periodic::Mirror => mirror(&map),
-        Periodic::Window { taper } if taper > 0.0 && taper <= 0.5 => Ok(window(map, |t| tukey(t, taper))),
+        Periodic::Window { taper } if taper > 0.0 && taper <= 0.5 => {
+            let lowest = map.heights.min();
+            Ok(window(map, lowest, |t| tukey(t, taper)))
+        }
         Periodic::Window { taper } => Err(TreatError::Taper(taper)),
     }
 }
@@ -37,16 +40,15 @@ fn tukey(t: f64, taper: f64) -> f64 {
     if from_end >= 1.0 { 1.0 } else { 0.5 - 0.5 * (std::f64::consts::PI * from_end).cos() }
 }
 
-/// Heights about their mean, multiplied by a window.
+/// Heights above `base`, multiplied by a window.
 ///
 /// The window is the product of `weight` of the places along x and y, which are in [0, 1].
-fn window(mut map: HeightMap, weight: impl Fn(f64) -> f64) -> HeightMap {
+fn window(mut map: HeightMap, base: f64, weight: impl Fn(f64) -> f64) -> HeightMap {
     let grid = map.heights.grid();
     let weights = |n: usize| -> Vec<f64> { (0..n).map(|i| weight((i as f64 + 0.5) / n as f64)).collect() };
     let (along_x, along_y) = (weights(grid.nx()), weights(grid.ny()));
-    let (mean, _) = mean(&map.heights);
     for (row, y) in map.heights.values_mut().chunks_exact_mut(grid.nx()).zip(&along_y) {
-        row.iter_mut().zip(&along_x).for_each(|(height, x)| *height = mean + x * y * (*height - mean));
+        row.iter_mut().zip(&along_x).for_each(|(height, x)| *height = base + x * y * (*height - base));
     }
     map
 }
@@ -61,7 +63,7 @@ pub fn hann(heights: &Field) -> Field {
     // ⟨sin⁴⟩ = 3/8, so the mean square of each factor is 1 after division by √(3/8).
     let scale = (8.0_f64 / 3.0).sqrt();
     let (mean, _) = mean(heights);
-    let windowed = window(HeightMap::bare(heights.clone()), |t| scale * (std::f64::consts::PI * t).sin().powi(2));
+    let windowed = window(HeightMap::bare(heights.clone()), mean, |t| scale * (std::f64::consts::PI * t).sin().powi(2));
     let mut field = windowed.heights;
     field.values_mut().iter_mut().for_each(|height| *height -= mean);
     field

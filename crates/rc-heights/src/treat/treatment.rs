@@ -11,6 +11,11 @@ pub enum Treatment {
     Crop(Crop),
     /// Mirror the map.
     Flip(Flip),
+    /// Replace isolated points far from their neighbours ([`crate::suspicion::spike_points`]).
+    Despike {
+        /// Robust standard deviations from the median of the neighbours that make a spike, 3 or more.
+        sigma: f64,
+    },
     /// Give heights to missing points.
     Fill(Fill),
     /// Remove a form.
@@ -25,6 +30,13 @@ pub enum Treatment {
         /// Cut-off wavelength, in the unit of the sides.
         wavelength: f64,
     },
+    /// Remove long waves: the map minus its mean by the same filter (L-filter of ISO 25178-3).
+    ///
+    /// Waves of length `wavelength` keep half of their amplitude.
+    HighPass {
+        /// Cut-off wavelength, in the unit of the sides.
+        wavelength: f64,
+    },
     /// Change the numbers of points on the same rectangle.
     Resample(Grid),
     /// Put copies beside each other.
@@ -36,10 +48,12 @@ impl fmt::Display for Treatment {
         match self {
             Self::Crop(crop) => write!(f, "crop {crop}"),
             Self::Flip(axis) => write!(f, "flip {axis}"),
+            Self::Despike { sigma } => write!(f, "despike {sigma}"),
             Self::Fill(how) => write!(f, "fill {how}"),
             Self::Level(form) => write!(f, "level {form}"),
             Self::Periodic(how) => write!(f, "periodic {how}"),
             Self::LowPass { wavelength } => write!(f, "low-pass {wavelength:e}"),
+            Self::HighPass { wavelength } => write!(f, "high-pass {wavelength:e}"),
             Self::Resample(grid) => write!(f, "resample {grid}"),
             Self::Repeat(repeat) => write!(f, "repeat {repeat}"),
         }
@@ -49,6 +63,8 @@ impl fmt::Display for Treatment {
 /// The part that is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crop {
+    /// The measured rectangle: border rows and columns with more missing than measured points are cut.
+    Measured,
     /// The largest square in the middle, by its lengths. Every method accepts it.
     Square,
     /// A number of points, in the middle or from a first point on.
@@ -65,6 +81,7 @@ pub enum Crop {
 impl fmt::Display for Crop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Measured => f.write_str("measured"),
             Self::Square => f.write_str("square"),
             Self::Points { nx, ny, from: None } => write!(f, "{nx}x{ny}"),
             Self::Points { nx, ny, from: Some([x, y]) } => write!(f, "{nx}x{ny}+{x}+{y}"),
@@ -126,9 +143,9 @@ pub enum Periodic {
     /// Every height and the distribution of heights stay the same. Slopes change sign at the old borders. A contact
     /// there is twice as wide.
     Mirror,
-    /// Heights decrease to their mean towards the borders (Tukey's window).
+    /// Heights above the lowest one decrease to 0 towards the borders (Tukey's window).
     ///
-    /// Sides stay the same. The outer part of the map is flatter than the surface.
+    /// Sides stay the same. No height increases, and the border is the last to touch.
     Window {
         /// Part of each side at each end where heights decrease, above 0 and at most 0.5.
         taper: f64,

@@ -15,6 +15,7 @@ mod kinds;
 mod masks;
 mod orders;
 mod parts;
+mod preparation;
 mod programs;
 mod robustness;
 mod text_marks;

@@ -288,6 +288,7 @@ fn treatments_that_need_every_height_say_so() {
     for treatment in [
         Treatment::Periodic(Periodic::Mirror),
         Treatment::LowPass { wavelength: 0.5 },
+        Treatment::HighPass { wavelength: 0.5 },
         Treatment::Resample(Grid::square(4).expect("a grid")),
     ] {
         let error = apply(holed.clone(), &[treatment]).expect_err("a hole").to_string();

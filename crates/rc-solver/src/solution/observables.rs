@@ -65,7 +65,7 @@ impl Observables {
         [rms_pressure, max_pressure]: [f64; 2],
     ) -> Self {
         // Where the pressure leaves q = H - p to the hardness, edges of q are like other edges. p² is H² - 2 H q + q².
-        let rest = plastic.map(|edges| edges.rest);
+        let rest = plastic.map(|edges| edges.rest).filter(|rest| rest.perimeter_edges > 0);
         let of_rest = |of_area: &dyn Fn(&ContactArea) -> f64| rest.as_ref().map_or(0.0, of_area);
         // Differences of p are also those of q.
         let missing_square = area.missing_square
@@ -80,7 +80,9 @@ impl Observables {
         let observables = Self {
             area: bars.map_or(area, |(area, _)| area),
             rms_pressure,
-            rms_pressure_corrected: corrected(rms_pressure, &area),
+            // Pressures are at most the hardness, so ⟨p²⟩ is at most σ0 H.
+            rms_pressure_corrected: corrected(rms_pressure, &area)
+                .min((info.mean_pressure * hardness).sqrt().max(rms_pressure)),
             rms_pressure_error: rms_pressure_error(info, (&area, rest.as_ref()), [rms_pressure, max_pressure]),
             max_pressure,
             mean_gap: (info.mean_gap() + flow).max(0.0),
@@ -90,6 +92,25 @@ impl Observables {
             plastic: bars.map(|(_, plastic)| plastic),
         };
         observables.with_energy_error(info.iteration_error)
+    }
+
+    /// Adds to the error bars what follows from the relative error of the load under a given penetration.
+    ///
+    /// Contacts grow with the load as [`ContactArea::growth`] says, and ⟨p²⟩ in proportion to it. `gap` is the error of
+    /// the penetration. In full contact the stiffness is infinite, and nothing is known of the load.
+    pub(crate) fn with_load_error(self, load: f64, gap: f64) -> Self {
+        if !load.is_finite() {
+            return self;
+        }
+        let grown = load * self.area.growth();
+        let area = ContactArea { error: self.area.error.hypot(grown).min(1.0), ..self.area };
+        Self {
+            area,
+            rms_pressure_error: self.rms_pressure_error.map(|bar| bar.hypot(0.5 * load * self.rms_pressure_corrected)),
+            mean_gap_error: self.mean_gap_error.hypot(gap),
+            plastic: self.plastic.map(|plastic| PlasticContact { error: plastic.error.hypot(grown), ..plastic }),
+            ..self
+        }
     }
 
     /// Adds to the error bars the errors from the tolerance of the solve.
@@ -193,8 +214,9 @@ const GAP_OVER_AREA: f64 = 3.0;
 
 /// 95 % error of the mean gap from singular pressure at free borders.
 ///
-/// Its unit is the ratio of `Rim::at_border` to the mean pressure. The measured values are in docs/constants.md.
-const GAP_AT_BORDER: f64 = 0.4;
+/// Its unit is the ratio of `Rim::at_border` to the mean pressure. The second number is multiplied by the part of the
+/// patch in contact: errors of edges inside the patch have the other sign. The measured values are in docs/constants.md.
+const GAP_AT_BORDER: [f64; 2] = [0.4, 0.3];
 
 /// Estimated error of the mean gap. It is 0 without contact.
 fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {
@@ -207,7 +229,7 @@ fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f6
         rim.scatter_of_sharp,
         rim.hidden_gap,
         GAP_OVER_AREA * area.relative_error().min(1.0).powi(2) * info.penetration.abs(),
-        GAP_AT_BORDER * (rim.at_border + rim.at_jumps) / mean_pressure,
+        (GAP_AT_BORDER[0] + GAP_AT_BORDER[1] * area.fraction) * (rim.at_border + rim.at_jumps) / mean_pressure,
         // The overlap that the certificate has found.
         info.certificate.penetration * info.penetration_full_contact,
     ];

@@ -37,7 +37,8 @@ pub struct Solution<'a> {
     pub(crate) gap: OnceLock<Field>,
     pub(crate) plastic_gap: OnceLock<Field>,
     pub(crate) displacement: OnceLock<Field>,
-    observables: OnceLock<Observables>,
+    /// The observables, and the error of the penetration at the load.
+    observables: OnceLock<(Observables, f64)>,
     stiffness: OnceLock<f64>,
     conductance: OnceLock<f64>,
 }
@@ -164,7 +165,7 @@ impl<'a> Solution<'a> {
     /// ([`Solution::mean_pressure_error`]).
     #[must_use]
     pub fn penetration_error(&self) -> f64 {
-        self.summit.excess + self.observables().mean_gap_error
+        self.with_penetration_error().1
     }
 
     /// Estimated discretisation error of the mean pressure, in E*. `None` under a given load.
@@ -189,7 +190,21 @@ impl<'a> Solution<'a> {
     /// The observables: area, pressure, gap, energy.
     #[must_use]
     pub fn observables(&self) -> &Observables {
-        self.observables.get_or_init(|| self.solved.observables())
+        &self.with_penetration_error().0
+    }
+
+    fn with_penetration_error(&self) -> &(Observables, f64) {
+        self.observables.get_or_init(|| {
+            let observables = self.solved.observables();
+            let error = self.summit.excess + observables.mean_gap_error;
+            match self.how.asked.control {
+                Control::MeanPressure(_) => (observables, error),
+                Control::Penetration(_) => {
+                    let load_error = self.stiffness() * error / self.info().mean_pressure.max(f64::MIN_POSITIVE);
+                    (observables.with_load_error(load_error, error), error)
+                }
+            }
+        })
     }
 
     /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ.

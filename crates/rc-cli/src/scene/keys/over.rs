@@ -10,16 +10,16 @@ macro_rules! or_lower {
 impl SurfaceKeys {
     /// These keys laid over `lower`.
     ///
-    /// A key given here removes its alternatives in `lower`. A height map, a file of waves, a measured
-    /// spectrum and the parameters of a random surface are alternatives. A seed alone is that of a measured spectrum below. So are `rms`, `rms_slope` and `c0`. A `cell` removes the other side.
+    /// A key given here removes its alternatives in `lower`. A height map, a file of waves, a measured spectrum and the
+    /// parameters of a random surface are alternatives; a seed alone is that of a measured spectrum in `lower`. So are
+    /// `rms`, `rms_slope` and `c0`. A `cell` removes the other side, and a `shape` another shape. What is added to a
+    /// surface stays when another surface takes its place.
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
-        if self.heights.is_some() {
-            lower = Self { cell: lower.cell, cell_y: lower.cell_y, ..Self::default() };
+        if self.heights.is_some() || self.like.is_some() {
+            lower = lower.added();
         } else if self.spectrum.is_some() || self.psd.is_some() {
-            lower = Self { cell: lower.cell, ..Self::default() };
-        } else if self.like.is_some() {
-            lower = Self { cell: lower.cell, cell_y: lower.cell_y, ..Self::default() };
+            lower = Self { cell_y: None, ..lower.added() };
         } else if self.has_law() || self.generates() && !lower.is_realisation() {
             (lower.psd, lower.psd_convention, lower.like, lower.heights_like) = (None, None, None, None);
             lower = Self { heights: None, spectrum: None, unit: None, height_scale: None, cell_y: None, ..lower };
@@ -32,8 +32,12 @@ impl SurfaceKeys {
         if self.rms.is_some() || self.rms_slope.is_some() || self.c0.is_some() {
             (lower.rms, lower.rms_slope, lower.c0) = (None, None, None);
         }
+        if self.shape.is_some() && self.shape != lower.shape {
+            (lower.shape, lower.radius, lower.angle) = (None, None, None);
+            (lower.wavelength, lower.wave_amplitude) = (None, None);
+        }
         or_lower!(self, lower, {
-            cell, cell_y, heights, spectrum, psd, psd_convention, like, heights_like, unit, height_unit, height_scale, missing, mask, channel, layout, waves, hurst, rms, rms_slope,
+            shape, radius, angle, wavelength, wave_amplitude, add, cell, cell_y, heights, spectrum, psd, psd_convention, like, heights_like, unit, height_unit, height_scale, missing, mask, channel, layout, waves, hurst, rms, rms_slope,
             c0, seed, truncation, roll_off, low_cut, amplitudes, grid, read_limit
         });
         self
@@ -43,15 +47,15 @@ impl SurfaceKeys {
 impl ContactKeys {
     /// These keys laid over `lower`.
     ///
-    /// A key given here removes its alternatives in `lower`. These are `pressure` and `penetration`, `tolerance` and
-    /// `energy_tolerance`, and `e_star` and the pair of `young` and `poisson`.
+    /// A key given here removes its alternatives in `lower`. These are `pressure`, `penetration` and `force`,
+    /// `tolerance` and `energy_tolerance`, and `e_star` and the moduli and ratios that it contains.
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
-        if self.pressure.is_some() || self.penetration.is_some() {
-            (lower.pressure, lower.penetration) = (None, None);
+        if self.n_loads() > 0 {
+            (lower.pressure, lower.penetration, lower.force) = (None, None, None);
         }
         if self.e_star.is_some() {
-            (lower.young, lower.poisson) = (None, None);
+            (lower.young, lower.poisson, lower.young2, lower.poisson2) = (None, None, None, None);
         } else if self.young.is_some() || self.poisson.is_some() {
             lower.e_star = None;
         }
@@ -59,7 +63,7 @@ impl ContactKeys {
             (lower.tolerance, lower.energy_tolerance) = (None, None);
         }
         or_lower!(self, lower, {
-            young, poisson, e_star, pressure, penetration, hardness, conductivity, kernel, boundary, layer_thickness, layer_poisson, method, border_level,
+            young, poisson, young2, poisson2, e_star, pressure, penetration, force, hardness, conductivity, kernel, boundary, layer_thickness, layer_poisson, method, border_level,
             energy_tolerance, tolerance, area_error, output_grid
         });
         self.leakage |= lower.leakage;

@@ -88,11 +88,11 @@ pub fn kernel(name: KernelName) -> Option<&'static dyn Kernel> {
 /// [`CliError::Input`].
 pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, CliError> {
     let keys = elastic_layer::with_poisson(keys)?;
-    let defaults = ContactKeys { pressure: None, penetration: None, method: None, ..file::example().contact };
+    let defaults = ContactKeys { pressure: None, method: None, ..file::example().contact };
     let keys = keys.over(defaults);
     let units = Units::new(cell, elasticity(&keys)?);
     let control = control(&keys, units)?;
-    let hardness = hardness(&keys, units)?;
+    let hardness = hardness(&keys, (control, units))?;
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
     // A single solve has removed a wanted error of the area, and has a check of its own.
     features::check(&keys, [Feature::Sweep])?;
@@ -109,20 +109,36 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
 }
 
 fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
-    match (keys.pressure, keys.penetration) {
-        (Some(pressure), None) => Ok(Control::pascals(positive("pressure", "Pa", Some(pressure))?, units)),
-        (None, Some(depth)) => Ok(Control::metres(positive("penetration", "m", Some(depth))?, units)),
-        _ => Err(CliError::input("give exactly one of pressure (Pa) and penetration (m); neither is given")),
+    match (keys.pressure, keys.penetration, keys.force) {
+        (Some(pressure), None, None) => Ok(Control::pascals(positive("pressure", "Pa", Some(pressure))?, units)),
+        (None, Some(depth), None) => Ok(Control::metres(positive("penetration", "m", Some(depth))?, units)),
+        (None, None, Some(force)) => Ok(Control::pascals(mean_pressure(force, units.cell())?, units)),
+        (None, None, None) => {
+            Err(CliError::input("give exactly one of pressure (Pa), penetration (m) and force (N); none is given"))
+        }
+        _ => Err(CliError::input("give exactly one of pressure (Pa), penetration (m) and force (N)")),
     }
+}
+
+/// The mean pressure (Pa) of a force (N) on a cell or patch.
+///
+/// # Errors
+/// [`CliError::Input`] for a force that is not positive.
+pub(crate) fn mean_pressure(force: f64, cell: PeriodicCell) -> Result<f64, CliError> {
+    Ok(positive("force", "N", Some(force))? / cell.nominal_area())
 }
 
 /// The hardness in E*; infinite if it is not given.
 ///
 /// Converted back to Pa, it is at most the given value.
-fn hardness(keys: &ContactKeys, units: Units) -> Result<f64, CliError> {
+fn hardness(keys: &ContactKeys, (control, units): (Control, Units)) -> Result<f64, CliError> {
     let Some(given) = keys.hardness else { return Ok(f64::INFINITY) };
     let given = positive("hardness", "Pa", Some(given))?;
-    if let Some(pressure) = keys.pressure.filter(|pressure| *pressure >= given) {
+    let pressure = match control {
+        Control::MeanPressure(mean) => Some(keys.pressure.unwrap_or_else(|| units.pascals(mean))),
+        Control::Penetration(_) => None,
+    };
+    if let Some(pressure) = pressure.filter(|pressure| *pressure >= given) {
         return Err(CliError::input(format_args!(
             "hardness: {given} Pa cannot bear a mean pressure of {pressure} Pa; it must be above the pressure"
         )));
@@ -134,15 +150,30 @@ fn hardness(keys: &ContactKeys, units: Units) -> Result<f64, CliError> {
     Ok(hardness)
 }
 
+/// The half-space in place of both bodies.
 fn elasticity(keys: &ContactKeys) -> Result<Elasticity, CliError> {
+    let has_second = keys.young2.is_some() || keys.poisson2.is_some();
     if let Some(e_star) = keys.e_star {
+        if has_second {
+            return Err(CliError::input("young2: e_star is that of both bodies; give young and poisson instead of it"));
+        }
         return Elasticity::from_e_star(positive("e_star", "Pa", Some(e_star))?).map_err(CliError::input);
     }
-    let young = positive("young", "Pa", keys.young)?;
-    let poisson = keys.poisson.ok_or_else(|| missing("poisson"))?;
+    let first = body(["young", "poisson"], [keys.young, keys.poisson])?;
+    if !has_second {
+        return Ok(first);
+    }
+    let second = body(["young2", "poisson2"], [keys.young2, keys.poisson2])?;
+    first.against(second).map_err(|cause| CliError::input(format_args!("young2: {cause}")))
+}
+
+/// The half-space of one body, from the values of its two keys.
+fn body([young_key, poisson_key]: [&str; 2], [young, poisson]: [Option<f64>; 2]) -> Result<Elasticity, CliError> {
+    let young = positive(young_key, "Pa", young)?;
+    let poisson = poisson.ok_or_else(|| missing(poisson_key))?;
     Elasticity::from_young_poisson(young, poisson).map_err(|error| match error {
         UnitError::Poisson { value } => {
-            CliError::input(format_args!("poisson: must be above -1 and at most 0.5, not {value}"))
+            CliError::input(format_args!("{poisson_key}: must be above -1 and at most 0.5, not {value}"))
         }
         other => CliError::input(other),
     })

@@ -34,6 +34,9 @@ fn check_ratio(poisson: f64) -> Result<(), CliError> {
 /// The layer in units of the cell side; `None` for a half-space.
 pub(super) fn layer(keys: &ContactKeys, side: f64) -> Result<Option<Layer>, CliError> {
     let Some(thickness) = keys.layer_thickness else { return Ok(None) };
+    if keys.young2.is_some() {
+        return Err(CliError::input("young2: a layer is pressed by a rigid body; omit young2, or layer_thickness"));
+    }
     let thickness = positive("layer_thickness", "m", Some(thickness))? / side;
     let poisson = keys.layer_poisson.or(keys.poisson).ok_or_else(|| {
         CliError::input("layer_poisson: is missing; e_star does not contain Poisson's ratio of the layer")

@@ -7,7 +7,7 @@ use rc_heights::{FormatError, ReadError};
 use crate::error::CliError;
 use crate::files::names::SCENE_FILE;
 use crate::scene::file;
-use crate::scene::keys::{Scene, SurfaceKeys};
+use crate::scene::keys::{ContactKeys, Scene, SurfaceKeys};
 
 /// Flags laid over the scene that `file` names, without defaults.
 ///
@@ -57,14 +57,25 @@ fn lower_layer(path: &Path) -> Result<Scene, CliError> {
     }
 }
 
+fn two_loads(contact: &ContactKeys) -> String {
+    let loads = [("pressure", contact.pressure), ("penetration", contact.penetration), ("force", contact.force)];
+    let given: Vec<&str> = loads.iter().filter(|(_, value)| value.is_some()).map(|(key, _)| *key).collect();
+    format!("both {} are given; give exactly one", given.join(" and "))
+}
+
 /// Refuses keys that exclude each other in one place.
 fn check_alternatives(scene: &Scene) -> Result<(), String> {
     let Scene { surface, contact, .. } = scene;
-    if contact.pressure.is_some() && contact.penetration.is_some() {
-        return Err("both pressure and penetration are given; give exactly one".into());
+    if contact.n_loads() > 1 {
+        return Err(two_loads(contact));
     }
     if contact.e_star.is_some() && (contact.young.is_some() || contact.poisson.is_some()) {
         return Err("e_star replaces young and poisson; give either e_star or both of them".into());
+    }
+    if contact.e_star.is_some() && (contact.young2.is_some() || contact.poisson2.is_some()) {
+        return Err(
+            "e_star is that of both bodies; give either e_star, or young and poisson with young2 and poisson2".into()
+        );
     }
     if [surface.rms, surface.rms_slope, surface.c0].iter().flatten().count() > 1 {
         return Err("rms, rms_slope and c0 are alternatives; give one".into());

@@ -47,9 +47,11 @@ fn of_profile(keys: SurfaceKeys, like: &Path, profile: &Profile) -> Result<Surfa
         Some(grid) => grid,
         None => checked_grid(GridSpec::square((ELEMENTS_PER_WAVE * table.waves() as f64) as usize))?,
     };
-    // The folder has the table instead of the profile.
-    let keys = SurfaceKeys { cell: Some(side), unit: None, height_unit: None, height_scale: None, ..keys };
-    let keys = SurfaceKeys { heights_like: None, channel: None, layout: None, missing: None, mask: None, ..keys };
+    // The folder has the table instead of the profile. The file of another body is read in the same way.
+    let of_file = if keys.add.is_some() { keys.clone() } else { SurfaceKeys::default() };
+    let SurfaceKeys { unit, height_unit, height_scale, channel, layout, missing, mask, .. } = of_file;
+    let keys = SurfaceKeys { cell: Some(side), heights_like: None, unit, height_unit, height_scale, ..keys };
+    let keys = SurfaceKeys { missing, mask, channel, layout, ..keys };
     let mut setup = realisation(keys, (like.to_owned(), table), cell, grid)?;
     if profile.is_assumed {
         setup.assumed.push("metres for the profile, which names no unit; --unit says otherwise".to_owned());

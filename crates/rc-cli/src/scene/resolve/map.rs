@@ -1,4 +1,4 @@
-//! Keys that a surface from a file needs.
+//! Keys that a surface from a file or a shape needs.
 //!
 //! The example's size and material belong to another surface.
 
@@ -39,10 +39,12 @@ fn check(surface: &SurfaceKeys, missing: impl IntoIterator<Item = &'static str>)
         Some(("spectrum", _)) => "spectrum: a file of waves",
         Some(("psd", _)) => "psd: a table of a spectrum",
         Some(("like", _)) => "like: a twin",
-        _ => "heights: a height map",
+        Some(_) => "heights: a height map",
+        None if surface.is_shape() => "shape: a shape alone",
+        None => return Ok(()),
     };
-    match surface.file() {
-        Some(_) if !missing.is_empty() => Err(CliError::input(format_args!(
+    match &missing[..] {
+        [_, ..] => Err(CliError::input(format_args!(
             "{what} needs {} too; the default values are for random surfaces only",
             missing.join(", and ")
         ))),
@@ -60,7 +62,7 @@ fn size(surface: &SurfaceKeys) -> Result<Option<&'static str>, CliError> {
     let is_known = match &surface.heights {
         Some(path) => surface.cell.is_some() || rc_heights::may_have_sides(path, &surface.read_params())?,
         // The size of a twin is that of its map, which is read later.
-        None => surface.cell.is_some() || surface.spectrum.is_none() && surface.psd.is_none(),
+        None => surface.cell.is_some() || surface.spectrum.is_none() && surface.psd.is_none() && !surface.is_shape(),
     };
     Ok((!is_known).then_some(CELL))
 }

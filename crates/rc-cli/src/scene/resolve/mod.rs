@@ -5,6 +5,7 @@
 mod checks;
 mod contact;
 mod elastic_layer;
+mod form;
 mod layers;
 mod like;
 mod map;
@@ -12,6 +13,7 @@ mod realisation;
 mod surface;
 
 pub use checks::checked_grid;
+pub(crate) use contact::mean_pressure;
 pub use contact::{ContactSetup, Place, contact, kernel};
 pub(crate) use elastic_layer::check_thickness;
 pub use layers::layers;

@@ -8,10 +8,12 @@ use rc_fractal::{Amplitudes, MAX_WAVES, Normalisation, SpectrumParams, Truncatio
 use rc_heights::Scales;
 
 use super::checks::{checked_grid, missing, positive};
+use super::form::form;
 use super::like;
 use super::realisation::{checked_seed, realisation};
 use crate::error::CliError;
 use crate::scene::file;
+use crate::scene::form::Form;
 use crate::scene::heights::{self, CellOfMap};
 use crate::scene::keys::SurfaceKeys;
 use crate::scene::psd_file::PsdFile;
@@ -24,6 +26,9 @@ use crate::scene::wave_file::WaveFile;
 /// The side of an element is then `λ_min/32`.
 const ELEMENTS_PER_WAVE: usize = 32;
 
+/// Default number of elements per side for a shape.
+const ELEMENTS_OF_SHAPE: usize = 512;
+
 /// Checks the keys of the surface, with defaults from the embedded example.
 ///
 /// # Errors
@@ -31,7 +36,8 @@ const ELEMENTS_PER_WAVE: usize = 32;
 pub fn surface(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
     check_companions(&keys)?;
     if let Some(path) = keys.like.clone() {
-        return like::like(keys, &path);
+        let setup = like::like(keys, &path)?;
+        return Ok(SurfaceSetup { form: form(&setup.keys, setup.cell)?, ..setup });
     }
     let Some(path) = keys.heights.clone() else { return surface_in_cell(keys) };
     // Only the whole file tells the sides and the numbers of points. It is not read again.
@@ -49,12 +55,13 @@ pub fn surface(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
 /// [`CliError::Input`].
 pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
     let example = SurfaceKeys { grid: None, ..file::example().surface };
-    let keys = if keys.file().is_some() { keys } else { keys.over(example) };
+    let keys = if keys.file().is_some() || keys.is_shape() { keys } else { keys.over(example) };
     let side = positive("cell", "m", keys.cell)?;
     let side_y = keys.cell_y.map_or(Ok(side), |side_y| positive("cell_y", "m", Some(side_y)))?;
     let cell = PeriodicCell::rectangle(side, side_y).map_err(CliError::input)?;
     let grid = keys.grid.map(checked_grid).transpose()?;
-    match (keys.heights.clone(), keys.spectrum.clone()) {
+    let form = form(&keys, cell)?;
+    let setup = match (keys.heights.clone(), keys.spectrum.clone()) {
         (Some(path), _) => {
             let source = Source::File { path, expected: grid, params: keys.read_params(), scales: keys.scales() };
             Ok(SurfaceSetup::new(cell, source, keys))
@@ -62,9 +69,11 @@ pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
         (None, Some(path)) => of_waves(keys, &path, cell, grid),
         (None, None) => match keys.psd.clone() {
             Some(path) => of_spectrum(keys, path, cell, grid),
+            None if keys.is_shape() => of_shape(keys, form, cell, grid),
             None => random(keys, cell, grid),
         },
-    }
+    };
+    Ok(SurfaceSetup { form, ..setup? })
 }
 
 /// Refuses keys that say how another key is meant, without it.
@@ -78,21 +87,47 @@ fn check_companions(keys: &SurfaceKeys) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The setup of a random surface, on a grid that resolves its waves.
-fn random(keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
-    if keys.scales() != Scales::default() {
+/// The setup of a surface that is a shape alone.
+fn of_shape(
+    keys: SurfaceKeys,
+    form: Option<Form>,
+    cell: PeriodicCell,
+    grid: Option<Grid>,
+) -> Result<SurfaceSetup, CliError> {
+    check_generated(&keys, "a shape")?;
+    let waves = form.and_then(Form::waves).map_or(0, |waves| waves.ceil() as usize);
+    let default = GridSpec::square(waves.saturating_mul(ELEMENTS_PER_WAVE).max(ELEMENTS_OF_SHAPE));
+    let grid = grid.map_or_else(|| checked_grid(default), Ok)?;
+    let grid = resolving_grid(Some(grid), waves)?;
+    let keys = SurfaceKeys { grid: Some(GridSpec { nx: grid.nx(), ny: grid.ny() }), ..keys };
+    Ok(SurfaceSetup::new(cell, Source::Shape { grid }, keys))
+}
+
+/// Refuses keys that only surfaces from files have, for a surface that is generated.
+///
+/// They may be those of the file of another body.
+fn check_generated(keys: &SurfaceKeys, what: &str) -> Result<(), CliError> {
+    if keys.scales() != Scales::default() && keys.add.is_none() {
         return Err(CliError::input(
             "unit and height_scale apply to surfaces from files; give --heights FILE or --spectrum FILE, or omit them",
         ));
     }
-    if keys.reads_in_a_way() {
+    if keys.reads_in_a_way() && keys.add.is_none() {
         return Err(CliError::input(
             "channel, layout, missing and mask apply to height maps; give --heights FILE, or omit them",
         ));
     }
     if keys.cell_y.is_some() {
-        return Err(CliError::input("cell_y: applies to height maps; a random surface has a square cell, so omit it"));
+        return Err(CliError::input(format_args!(
+            "cell_y: applies to height maps; {what} has a square cell, so omit it"
+        )));
     }
+    Ok(())
+}
+
+/// The setup of a random surface, on a grid that resolves its waves.
+fn random(keys: SurfaceKeys, cell: PeriodicCell, grid: Option<Grid>) -> Result<SurfaceSetup, CliError> {
+    check_generated(&keys, "a random surface")?;
     let spectrum = spectrum(&keys, cell.side())?;
     let grid = resolving_grid(grid, spectrum.waves)?;
     let keys = SurfaceKeys { grid: Some(GridSpec { nx: grid.nx(), ny: grid.ny() }), ..keys };
@@ -126,7 +161,8 @@ fn of_spectrum(
             "cell_y: applies to height maps; a surface of waves has a square cell, so omit it",
         ));
     }
-    if keys.scales() != Scales::default() || keys.reads_in_a_way() {
+    // They may be those of the file of another body.
+    if (keys.scales() != Scales::default() || keys.reads_in_a_way()) && keys.add.is_none() {
         return Err(CliError::input(
             "psd: a table is in rad/m and m^4; omit unit, height_unit, height_scale, channel, layout, missing and mask",
         ));

@@ -158,7 +158,7 @@ const WIDTH_AT_EDGE: f64 = 0.03;
 const WIDTH_AT_SHARP_EDGE: f64 = 0.16;
 
 /// Ratio of the 95 % error of this width to that of the area.
-const WIDTH_OF_AREA: f64 = 1.25;
+const WIDTH_OF_AREA: f64 = 1.6;
 
 /// Part of the squares of lone elements that they miss.
 ///
@@ -290,6 +290,11 @@ impl ContactArea {
         if self.rim.at_border > 0.0 { self.rim.at_border / mean_pressure * self.per_depth() } else { 0.0 }
     }
 
+    /// Change of the area with the logarithm of the load: A at light loads, and 0 in full contact.
+    pub(crate) fn growth(&self) -> f64 {
+        self.fraction * (1.0 - self.fraction)
+    }
+
     /// Adds the error that the tolerance of the solve leaves.
     ///
     /// `energy_error` is √(G/U), the relative error of the pressure in the energy norm, below a third. The error of the
@@ -300,15 +305,17 @@ impl ContactArea {
 
     /// Relative error of the width of contact spots, which their conductance is proportional to.
     ///
-    /// It is the width by which elements miss the edges of spots, in units of the width 2 A/P.
+    /// It is the width by which elements miss the edges, in units of the width 2 A/P of the spots and 2 (1 - A)/P of the
+    /// places between them, which constrict the current where they are narrow.
     pub(crate) fn relative_error_of_width(&self) -> f64 {
         if self.fraction == 0.0 {
             return 0.0;
         }
+        let free = (1.0 - self.fraction).max(f64::MIN_POSITIVE);
         let sharp = self.rim.part_of_sharp;
         let of_edge = WIDTH_AT_EDGE * (1.0 - sharp) + WIDTH_AT_SHARP_EDGE * sharp;
         let edges = of_edge * self.rim.area / (2.0 * self.fraction);
-        (WIDTH_OF_AREA * self.relative_error()).hypot(edges)
+        ((WIDTH_OF_AREA * self.relative_error()).hypot(edges) / free).min(1.0)
     }
 
     /// Part of the contact edges at which the heights jump, as at the edge of a flat top.

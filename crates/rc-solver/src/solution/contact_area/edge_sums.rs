@@ -2,8 +2,9 @@
 
 use std::ops::{Add, AddAssign};
 
-use crate::solution::contact_area::corner::{at_corner, sharp_position};
+use crate::solution::contact_area::corner::at_corner;
 use crate::solution::contact_area::edge::Edge;
+use crate::solution::contact_area::kind::Kind;
 
 /// The eight neighbours of an element, in order around it.
 const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
@@ -91,22 +92,6 @@ pub(crate) struct EdgeSums {
     positions: [u32; N_POSITIONS],
 }
 
-/// Position below which the last element of a contact has a lower pressure than the next one inside.
-///
-/// At the edge of a flat top the pressure is highest, and the gap beside it is that of the lower ground.
-const NEAR_CENTRE: f64 = 0.02;
-
-/// Ratio of the pressures of the last two elements inside. It is about 2 at the edge of a stamp.
-const HIGHER: f64 = 1.5;
-
-/// Whether heights jump at an edge with these pressures of the last two elements inside and this ratio as in
-/// [`Edge::new`].
-fn is_jump([pressure, inside]: [f64; 2], gap_ratio: f64) -> bool {
-    // With the root of the distance, the ratio of the squares is that of 0.02 to 1.02 at most.
-    let is_high = inside > 0.0 && pressure > HIGHER * inside;
-    is_high && Edge::new(gap_ratio).is_some_and(|edge| edge.position() < NEAR_CENTRE)
-}
-
 impl Default for EdgeSums {
     fn default() -> Self {
         Self::from_values(&[0.0; N_VALUES + N_POSITIONS])
@@ -151,24 +136,25 @@ impl EdgeSums {
                 continue;
             }
             self.edges += 1;
-            if pressure >= hardness {
-                positions[place] = self.add_sharp(at(0, 0)[1], at(dx, dy)[1]).unwrap_or(0.5);
-                continue;
+            let (side, across) = (if dy == 0 { sides[0] } else { sides[1] }, |steps: isize| at(steps * dx, steps * dy));
+            let kind = Kind::of(&across, side, hardness);
+            positions[place] = kind.position();
+            match kind {
+                Kind::Jump => {
+                    self.jumps += 1;
+                    self.at_jumps += if pressure < hardness { pressure * pressure * side } else { 0.0 };
+                }
+                Kind::Sharp { overlap, gap } => self.add_sharp([overlap, gap.unwrap_or(f64::NAN)], kind.position()),
+                Kind::Smooth(edge) => {
+                    if is_thin_rim {
+                        self.thin += 1;
+                    } else {
+                        self.squares += pressure * pressure;
+                        self.next_squares += across(-1)[0].powi(2);
+                    }
+                    self.add_smooth(edge, across(2)[1] / (pressure * side));
+                }
             }
-            let (side, inside) = (if dy == 0 { sides[0] } else { sides[1] }, at(-dx, -dy)[0]);
-            if is_jump([pressure, inside], at(dx, dy)[1] / (pressure * side)) {
-                self.jumps += 1;
-                self.at_jumps += pressure * pressure * side;
-                continue;
-            }
-            if is_thin_rim {
-                self.thin += 1;
-            } else {
-                self.squares += pressure * pressure;
-                self.next_squares += inside.powi(2);
-            }
-            let ratios = [1, 2].map(|steps| at(steps * dx, steps * dy)[1] / (pressure * side));
-            positions[place] = self.add_smooth(ratios).unwrap_or(0.5);
         }
         self.add_corners(sides, hardness, positions, at);
     }
@@ -220,11 +206,9 @@ impl EdgeSums {
         }
     }
 
-    /// Adds an edge whose next two gaps outside have these ratios to the pressure ([`Edge::new`]).
-    ///
-    /// Returns its position, if that is known.
-    fn add_smooth(&mut self, [next, second]: [f64; 2]) -> Option<f64> {
-        let edge = Edge::new(next)?;
+    /// Adds an edge with the ratio of the second gap outside to the pressure, as in [`Edge::new`].
+    fn add_smooth(&mut self, edge: Option<Edge>, second: f64) {
+        let Some(edge) = edge else { return };
         self.shift += edge.position() - 0.5;
         self.known[0] += 1;
         self.add_position(edge.position());
@@ -232,20 +216,20 @@ impl EdgeSums {
             self.known[1] += 1;
             self.deviation += deviation;
         }
-        Some(edge.position())
     }
 
-    /// Adds the edge between a plastic element and a neighbour out of contact.
+    /// Adds the edge at this position between a plastic element and a neighbour out of contact.
     ///
-    /// `inside` and `outside` are their gaps. A negative gap is an overlap. Returns the position, if it is known.
-    fn add_sharp(&mut self, inside: f64, outside: f64) -> Option<f64> {
+    /// `[overlap, gap]` are those of the two. A gap that is not known is NaN.
+    fn add_sharp(&mut self, [overlap, gap]: [f64; 2], position: f64) {
         self.sharp += 1;
-        let position = sharp_position([inside, outside])?;
+        if gap.is_nan() {
+            return;
+        }
         self.shift_of_sharp += position - 0.5;
-        self.steps += (-inside).max(0.0) + outside.max(0.0);
+        self.steps += overlap + gap;
         self.known_sharp += 1;
         self.add_position(position);
-        Some(position)
     }
 
     /// Counts an edge at a position between the centres of two elements, from 0 to 1.
@@ -432,13 +416,6 @@ mod tests {
             sums.hidden
         };
         assert_eq!([0.01, 0.1, 0.3].map(hidden), [1, 1, 0]);
-    }
-
-    /// The pressure of a stamp rises to its edge, and that of other contacts falls to zero.
-    #[test]
-    fn heights_jump_at_the_edge_of_a_stamp() {
-        assert!(is_jump([4.0, 2.0], 1e3) && !is_jump([4.0, 2.0], 0.1));
-        assert!(!is_jump([1.0, 2.0], 1e3) && !is_jump([1.0, 0.0], 1e3) && !is_jump([4.0, 2.0], f64::NAN));
     }
 
     #[test]

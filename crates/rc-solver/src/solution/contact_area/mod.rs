@@ -8,4 +8,5 @@ pub(crate) mod area;
 pub(crate) mod corner;
 pub(crate) mod edge;
 pub(crate) mod edge_sums;
+pub(crate) mod kind;
 pub(crate) mod plastic;

@@ -1,0 +1,113 @@
+//! Arguments of `rc prepare`.
+
+use std::path::PathBuf;
+
+use clap::{Arg, Args};
+use rc_core::GridError;
+use rc_heights::{Crop, Fill, Level, Treatment};
+
+use crate::scene::keys::{RunKeys, SurfaceKeys};
+use crate::surface::treatment::{DESPIKE, PeriodicName, TreatmentKeys};
+
+/// Arguments of `rc prepare`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = PREPARE_HELP)]
+#[command(mut_args(without_generated))]
+#[command(mut_arg("out", |out| out.required(true).help("Folder for the prepared map")))]
+pub(crate) struct PrepareArgs {
+    /// Height map: a file of an instrument or a program, or a folder of rc surface
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
+    /// How the file is read.
+    #[command(flatten)]
+    pub(crate) surface: SurfaceKeys,
+    /// What is done instead of the usual treatments, or besides.
+    #[command(flatten)]
+    pub(crate) treatment: TreatmentKeys,
+    /// What is not done.
+    #[command(flatten)]
+    pub(crate) without: Without,
+    /// Threads and output.
+    #[command(flatten)]
+    pub(crate) run: RunKeys,
+}
+
+/// The usual treatments that are left out.
+#[derive(Args, Clone, Copy, Debug, Default)]
+#[command(next_help_heading = "Usual treatments to leave out")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag")]
+pub(crate) struct Without {
+    /// Keep border rows and columns that are not measured
+    #[arg(long, conflicts_with = "crop")]
+    no_crop: bool,
+    /// Keep spikes
+    #[arg(long, conflicts_with = "despike")]
+    no_despike: bool,
+    /// Keep the tilt
+    #[arg(long, conflicts_with = "level")]
+    no_level: bool,
+    /// Do not fill missing points (needs --no-periodic, and a map without any)
+    #[arg(long, conflicts_with = "fill")]
+    no_fill: bool,
+    /// Do not mirror the map, as for --boundary free
+    #[arg(long, conflicts_with = "periodic")]
+    no_periodic: bool,
+}
+
+impl PrepareArgs {
+    /// The usual treatments, with those that are given instead of them or besides, in the order of their application.
+    ///
+    /// # Errors
+    /// When `resample` is not a grid.
+    pub(crate) fn treatments(&self) -> Result<Vec<Treatment>, GridError> {
+        let (given, without) = (&self.treatment, self.without);
+        let usual = TreatmentKeys {
+            crop: given.crop.or((!without.no_crop).then_some(Crop::Measured)),
+            despike: given.despike.or((!without.no_despike).then_some(DESPIKE)),
+            level: given.level.or((!without.no_level).then_some(Level::Plane)),
+            fill: given.fill.or((!without.no_fill).then_some(Fill::Laplace)),
+            periodic: given.periodic.or((!without.no_periodic).then_some(PeriodicName::Mirror)),
+            ..given.clone()
+        };
+        let mut treatments = usual.treatments()?;
+        if given.crop == Some(Crop::Square) {
+            // The square is one of measured points. Numbers of points are those of the file.
+            treatments.insert(0, Treatment::Crop(Crop::Measured));
+        }
+        Ok(treatments)
+    }
+}
+
+/// Hides the keys of generated surfaces, and those that the file or the treatments determine.
+fn without_generated(arg: Arg) -> Arg {
+    const HIDDEN: [&str; 19] = [
+        "heights",
+        "spectrum",
+        "psd",
+        "psd_convention",
+        "like",
+        "heights_like",
+        "waves",
+        "hurst",
+        "rms",
+        "rms_slope",
+        "c0",
+        "seed",
+        "truncation",
+        "roll_off",
+        "low_cut",
+        "amplitudes",
+        "grid",
+        "time_limit",
+        "repeat",
+    ];
+    let is_hidden = HIDDEN.contains(&arg.get_id().as_str());
+    if is_hidden { arg.hide(true) } else { arg }
+}
+
+const PREPARE_HELP: &str = "\
+The usual treatments, in this order: --crop measured, --despike 8, --level plane, --fill laplace, --periodic mirror. A flag of a \
+treatment replaces the usual one, or adds one. --crop square takes the largest square of the measured rectangle.
+
+DIR receives heights.npy (m) and scene.toml, so that rc solve DIR solves it, prepare.json with every step, surface.json, and the \
+pictures before.png, despiked.png and surface.png.";

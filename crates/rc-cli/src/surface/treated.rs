@@ -1,0 +1,136 @@
+//! Height maps from files, and their treatment.
+
+use std::path::PathBuf;
+
+use rc_heights::{Effect, HeightMap, TreatError, Treatment};
+use rc_sweep::memory::Budget;
+use rc_sweep::{Warning, WarningCode};
+
+use crate::error::CliError;
+use crate::inspect::record::{SurfaceRecord, TreatmentRow};
+use crate::scene::heights::CellOfMap;
+use crate::scene::keys::SurfaceKeys;
+use crate::scene::loaded::LoadedSurface;
+use crate::scene::{heights, origin, resolve};
+use crate::warnings::surface as doubts;
+
+/// A map in metres with the size of its cell, before its treatments.
+pub(crate) struct MapRead {
+    pub(crate) map: HeightMap,
+    path: PathBuf,
+    keys: SurfaceKeys,
+    /// Doubts about the map, and what was assumed about it.
+    warnings: Vec<Warning>,
+    /// What the reader did.
+    notes: Vec<String>,
+}
+
+/// A surface in its cell, with the effects of its treatments.
+pub(crate) struct Prepared {
+    pub(crate) surface: LoadedSurface,
+    /// Side of the cell along x (m).
+    pub(crate) side: f64,
+    /// Statistics of a height map before the treatments and after each; empty without treatments.
+    pub(crate) effects: Vec<Effect>,
+    /// Doubts about the map as read, and about its treatments.
+    pub(crate) warnings: Vec<Warning>,
+    /// What the reader of the map did.
+    pub(crate) notes: Vec<String>,
+}
+
+impl Prepared {
+    /// The record of the surface, whose heights are given in λ.
+    pub(crate) fn record(&self, heights: &rc_core::Field) -> SurfaceRecord {
+        let record = SurfaceRecord::of(heights, self.side, self.surface.moments(heights));
+        let warnings = [&self.warnings[..], &record.shape().warnings()].concat();
+        SurfaceRecord {
+            treatments: self.effects.iter().map(TreatmentRow::from).collect(),
+            notes: self.notes.clone(),
+            source: self.surface.origin.clone(),
+            warnings,
+            ..record
+        }
+    }
+}
+
+/// Reads the map of `keys`.
+///
+/// # Errors
+/// [`CliError::Input`] when there is no map, or it cannot be read, or has no size.
+pub(crate) fn read(keys: SurfaceKeys) -> Result<MapRead, CliError> {
+    let Some(path) = keys.heights.clone() else {
+        let message = "treatments (crop, flip, despike, level, fill, high_pass, periodic, low_pass, resample, repeat) are \
+                       for height maps; give --heights FILE";
+        return Err(CliError::input(message));
+    };
+    resolve::check_size(&keys)?;
+    let mut map = heights::read(&path, &keys.read_params(), keys.scales())?;
+    let CellOfMap { cell, cell_y, assumed } = CellOfMap::of(&path, &map, [keys.cell, keys.cell_y])?;
+    let mut warnings = doubts::of_map(&map);
+    warnings.extend(doubts::assumed(&assumed));
+    let notes = map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
+    map.sides = cell.map(|cell| [cell, cell_y.unwrap_or(cell)]);
+    map.notes.clear();
+    Ok(MapRead { map, path, keys, warnings, notes })
+}
+
+/// The map after `treatments`, which must fit into the memory of `budget`.
+///
+/// # Errors
+/// [`CliError::Input`] when a treatment is not possible, or leaves missing points.
+pub(crate) fn treat(read: MapRead, treatments: &[Treatment], budget: Budget) -> Result<Prepared, CliError> {
+    let MapRead { map, path, keys, warnings, notes } = read;
+    let grids = rc_heights::grids_after(&map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
+    for (grid, treatment) in grids.into_iter().zip(treatments) {
+        budget.check_grid(&format!("the map after {treatment}"), grid)?;
+    }
+    let mut effects = vec![Effect::of(&map, "as read")];
+    let (map, after) = rc_heights::apply(map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
+    let mut origin = origin::of(&path, keys.channel.as_deref());
+    origin.treatments.extend(after.iter().map(|effect| effect.treatment.clone()));
+    effects.extend(after);
+    let CellOfMap { cell, cell_y, .. } = CellOfMap::of(&path, &map, [None, None])?;
+    // The scene of a folder has the grid of the map before its treatments.
+    let as_read = effects[0].grid;
+    let expected = keys.grid.filter(|grid| (grid.nx, grid.ny) != (as_read.nx(), as_read.ny()));
+    let expected = expected.map(resolve::checked_grid).transpose()?;
+    let setup = resolve::surface_in_cell(SurfaceKeys { cell, cell_y, grid: None, ..keys })?;
+    let mut surface = setup.of_map(&path, map, expected)?;
+    let mut warnings = despiked(warnings, treatments, &surface.warnings);
+    warnings.extend(filled(treatments, &effects));
+    warnings.extend(doubts::of_record(&path));
+    surface.origin = Some(origin);
+    Ok(Prepared { surface, side: setup.cell.side(), effects, warnings, notes })
+}
+
+/// A map in metres after treatments that are checked, and the doubts that `rc surface` has about it.
+///
+/// # Errors
+/// [`TreatError`].
+pub fn prepared(map: HeightMap, treatments: &[Treatment]) -> Result<(HeightMap, Vec<Warning>), TreatError> {
+    let warnings = doubts::of_map(&map);
+    let mut effects = vec![Effect::of(&map, "as read")];
+    let (map, after) = rc_heights::apply(map, treatments)?;
+    effects.extend(after);
+    let mut warnings = despiked(warnings, treatments, &doubts::of_map(&map));
+    warnings.extend(filled(treatments, &effects));
+    Ok((map, warnings))
+}
+
+/// The doubts about a map as read, in which despiking leaves only spikes that are doubts about the map after it too.
+fn despiked(read: Vec<Warning>, treatments: &[Treatment], after: &[Warning]) -> Vec<Warning> {
+    if !treatments.iter().any(|treatment| matches!(treatment, Treatment::Despike { .. })) {
+        return read;
+    }
+    let is_spikes = |warning: &Warning| warning.code == WarningCode::Spikes;
+    let others = read.into_iter().filter(|warning| !is_spikes(warning));
+    others.chain(after.iter().filter(|warning| is_spikes(warning)).cloned()).collect()
+}
+
+/// A doubt about the points that a treatment has filled.
+fn filled(treatments: &[Treatment], effects: &[Effect]) -> Option<Warning> {
+    let at = treatments.iter().position(|treatment| matches!(treatment, Treatment::Fill(_)))?;
+    // The first state is that before all treatments.
+    let before = effects.get(at)?;
+    doubts::filled(before.missing, before.grid.len())
+}
