@@ -34,7 +34,7 @@ pub(crate) struct InspectArgs {
     /// Side of the cell along y (m) [default: that in the file, or equal spacings]
     #[arg(long, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
     pub(crate) cell_y: Option<f64>,
-    /// Unit of lengths in a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]
+    /// Unit of a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]
     #[arg(long, value_name = "UNIT")]
     pub(crate) unit: Option<LengthUnit>,
     /// Unit of heights, where it differs from --unit
@@ -45,8 +45,8 @@ pub(crate) struct InspectArgs {
     /// In an image, 1 is one level of grey.
     #[arg(long, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
     pub(crate) height_scale: Option<f64>,
-    /// Values that mark missing points, in the numbers of the file: -9999, or -9999,1e30
-    #[arg(long, value_name = "VALUE[,VALUE]", allow_hyphen_values = true)]
+    /// Values of missing points, in the numbers of the file: -9999,1e30
+    #[arg(long, value_name = "VALUES", allow_hyphen_values = true)]
     pub(crate) missing: Option<Marks>,
     /// Masked points of a .gwy file: use (they are missing) or ignore [default: use]
     #[arg(long, value_name = "use|ignore")]

@@ -48,7 +48,8 @@ pub struct SurfaceKeys {
     pub spectrum: Option<PathBuf>,
     /// Table of an isotropic spectrum: lines q C (rad/m, m⁴)
     ///
-    /// ⟨h²⟩ = ∫ C d²q; --psd-convention says otherwise. There are no waves outside the table. Phases are random (--seed).
+    /// ⟨h²⟩ = ∫ C d²q; --psd-convention says otherwise. There are no waves outside the table. Phases are random
+    /// (--seed).
     #[arg(long, value_name = "FILE", help_heading = help::FILES)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub psd: Option<PathBuf>,
@@ -58,8 +59,9 @@ pub struct SurfaceKeys {
     pub psd_convention: Option<PsdConvention>,
     /// Random twin of a map, or of a profile: lines x z
     ///
-    /// A twin of a map has its spectrum and heights, and a twin of a profile its spectrum. FILE is a height map, a folder of rc surface or rc prepare with one, or a text of two columns. The twin has the
-    /// size and the grid of the map, unless --cell and --grid say otherwise. --seed gives another twin.
+    /// A twin of a map has its spectrum and heights, and a twin of a profile its spectrum. FILE is a height map, a
+    /// folder of rc surface or rc prepare with one, or a text of two columns. The twin has the size and the grid of the
+    /// map, unless --cell and --grid say otherwise. --seed gives another twin.
     #[arg(long, value_name = "FILE", help_heading = help::FILES)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub like: Option<PathBuf>,
@@ -67,7 +69,7 @@ pub struct SurfaceKeys {
     #[arg(long, value_name = "NAME", help_heading = help::FILES, hide_possible_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub heights_like: Option<HeightsLike>,
-    /// Unit of lengths in a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]
+    /// Unit of a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]
     #[arg(long, value_name = "UNIT", help_heading = help::FILES)]
     pub unit: Option<LengthUnit>,
     /// Unit of heights, where it differs from --unit
@@ -80,8 +82,8 @@ pub struct SurfaceKeys {
     #[arg(long, value_name = "M", help_heading = help::FILES, value_parser = length::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "length::read")]
     pub height_scale: Option<f64>,
-    /// Values that mark missing points, in the numbers of the file: -9999, or -9999,1e30
-    #[arg(long, value_name = "VALUE[,VALUE]", help_heading = help::FILES, allow_hyphen_values = true)]
+    /// Values of missing points, in the numbers of the file: -9999,1e30
+    #[arg(long, value_name = "VALUES", help_heading = help::FILES, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub missing: Option<Marks>,
     /// Masked points of a .gwy: use (missing) or ignore [default: use]

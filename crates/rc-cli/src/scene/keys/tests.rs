@@ -44,5 +44,13 @@ fn a_height_map_replaces_a_random_surface_and_the_reverse() {
     let measured = SurfaceKeys { psd: Some("psd.csv".into()), cell: Some(2.0), seed: Some(1), ..Default::default() };
     let seeded = SurfaceKeys { seed: Some(7), ..Default::default() }.over(measured.clone());
     assert_eq!((seeded.psd, seeded.seed, seeded.cell), (measured.psd.clone(), Some(7), Some(2.0)));
-    assert_eq!(random.over(measured).psd, None);
+    assert_eq!(random.over(measured.clone()).psd, None);
+    // What is added stays on a measured spectrum or a twin.
+    let formed = SurfaceKeys { shape: Some(FormName::Flat), add: Some("b.npy".into()), waves: Some(8), ..rectangle() };
+    let twin = SurfaceKeys { like: Some("h.npy".into()), ..Default::default() };
+    for (upper, cell_y) in [(measured, None), (twin, Some(1.0))] {
+        let merged = upper.over(formed.clone());
+        assert_eq!((merged.shape, merged.add, merged.waves), (formed.shape, formed.add.clone(), None));
+        assert_eq!(merged.cell_y, cell_y);
+    }
 }
