@@ -59,4 +59,5 @@ The map is prepared as rc prepare does it, and solved at each pressure. Then one
 border, low-pass, despike, a patch with free borders, and every second point. treatment_low and treatment_high are the least and \
 the greatest result of all these rows; of a patch, penetration, stiffness and conductance do not count.
 
-DIR receives study.csv (a line for each treatment and pressure), study.json (the ranges too) and sweep/, the rows for --resume.";
+DIR receives study.csv (a line for each treatment and pressure), study.json (the ranges too), \
+the page report.html, and sweep/, the rows for --resume.";

@@ -17,12 +17,13 @@ use super::rows::StudyRows;
 use super::variants::{Base, Variant, after_crops};
 use crate::error::CliError;
 use crate::prepare::args::treatments;
+use crate::report::PAGE_FILE;
 use crate::run::threads;
 use crate::scene::keys::{ContactKeys, Scene};
 use crate::scene::{origin, resolve};
 use crate::surface::treated::{self, MapRead};
 use crate::sweep::solved::{self, HowRows};
-use crate::{terminal, text};
+use crate::{report, terminal, text};
 
 /// Folder of the rows in that of the study.
 const ROWS_FOLDER: &str = "sweep";
@@ -153,11 +154,12 @@ impl Check<'_> {
     }
 }
 
-/// Writes `study.csv` and `study.json`.
+/// Writes `study.csv`, `study.json` and the page.
 fn write(folder: &Path, record: &StudyRecord, rows: &SweepRows) -> Result<(), CliError> {
     let csv = to_csv(&lines(rows)).map_err(|cause| CliError::write(&folder.join("study.csv"), cause))?;
     let mut staged = Staged::new(folder)?;
     staged.add("study.csv", |path| files::write_synced(path, &csv))?;
     staged.add_text("study.json", &to_json(record))?;
+    staged.add_text(PAGE_FILE, &report::of_study(record))?;
     Ok(staged.commit()?)
 }

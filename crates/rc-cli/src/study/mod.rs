@@ -2,8 +2,8 @@
 
 pub(crate) mod args;
 pub(crate) mod command;
+pub(crate) mod ranges;
+pub(crate) mod record;
 
-mod ranges;
-mod record;
 mod rows;
 mod variants;

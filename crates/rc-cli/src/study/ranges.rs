@@ -25,32 +25,32 @@ const RESULTS: [(&str, &str, Option<&str>); 10] = [
 
 /// A result at one load, in SI units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct Range {
+pub(crate) struct Range {
     /// Key of the result.
-    pub(super) result: &'static str,
-    pub(super) unit: &'static str,
+    pub(crate) result: &'static str,
+    pub(crate) unit: &'static str,
     /// The result of the unchanged treatments.
-    pub(super) value: f64,
+    pub(crate) value: f64,
     /// Estimated error of the mesh of `value`; `None` if there is no estimate.
-    pub(super) mesh_error: Option<f64>,
+    pub(crate) mesh_error: Option<f64>,
     /// Least result of all treatments.
-    pub(super) treatment_low: f64,
+    pub(crate) treatment_low: f64,
     /// The treatment that gives it.
-    pub(super) low_by: String,
+    pub(crate) low_by: String,
     /// Greatest result of all treatments.
-    pub(super) treatment_high: f64,
+    pub(crate) treatment_high: f64,
     /// The treatment that gives it.
-    pub(super) high_by: String,
+    pub(crate) high_by: String,
 }
 
 /// The results at one load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(super) struct LoadRanges {
+pub(crate) struct LoadRanges {
     /// Mean pressure (Pa).
-    pub(super) pressure: f64,
+    pub(crate) pressure: f64,
     /// Number of treatments whose row converged.
-    pub(super) n_treatments: usize,
-    pub(super) results: Vec<Range>,
+    pub(crate) n_treatments: usize,
+    pub(crate) results: Vec<Range>,
 }
 
 /// The ranges at each of `pressures`. The rows are ordered by treatment, the unchanged one first, and then by load.

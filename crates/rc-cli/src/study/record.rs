@@ -11,22 +11,22 @@ use super::variants::Variant;
 
 /// A study with all its rows.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct StudyRecord {
+pub(crate) struct StudyRecord {
     /// The file of the map.
-    pub(super) source: MapOrigin,
+    pub(crate) source: MapOrigin,
     /// The treatments, the unchanged ones first.
-    pub(super) treatments: Vec<TreatmentOf>,
+    pub(crate) treatments: Vec<TreatmentOf>,
     /// Treatments that this map or contact does not allow.
-    pub(super) skipped: Vec<Skipped>,
+    pub(crate) skipped: Vec<Skipped>,
     /// The range of each result at each load.
-    pub(super) loads: Vec<LoadRanges>,
+    pub(crate) loads: Vec<LoadRanges>,
     /// The lines of `study.csv`.
-    pub(super) rows: Vec<Cells>,
+    pub(crate) rows: Vec<Cells>,
 }
 
 /// A treatment of the study.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct TreatmentOf {
+pub(crate) struct TreatmentOf {
     step: &'static str,
     treatment: String,
     steps: Vec<String>,
@@ -34,9 +34,9 @@ pub(super) struct TreatmentOf {
 
 /// A treatment without rows.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Skipped {
-    pub(super) treatment: String,
-    pub(super) reason: String,
+pub(crate) struct Skipped {
+    pub(crate) treatment: String,
+    pub(crate) reason: String,
 }
 
 impl From<&Variant> for TreatmentOf {
@@ -57,7 +57,7 @@ pub(super) fn lines(rows: &SweepRows) -> SweepRows {
 }
 
 /// `value` in the words of a table.
-pub(super) fn words(value: f64, unit: &'static str) -> String {
+pub(crate) fn words(value: f64, unit: &'static str) -> String {
     if unit.is_empty() { digits(value, 4) } else { engineering(value, unit) }
 }
 

@@ -63,6 +63,11 @@ fn each_result_has_the_range_of_all_treatments() {
             (Some("area_fraction"), &rows[i]["area_fraction_error"])
         );
     }
+    assert_eq!(place.names("s"), ["report.html", "study.csv", "study.json", "sweep"]);
+    let page = String::from_utf8(place.bytes("s/report.html")).expect("text");
+    assert!(page.contains("\"kind\":\"study\"") && page.contains("every second point"), "no study in the page");
+    let loads = ["<link", "src=\"", "@import"].into_iter().find(|word| page.contains(word));
+    assert_eq!(loads, None, "the page loads something");
     let table = String::from_utf8(place.bytes("s/study.csv")).expect("text");
     assert!(table.starts_with("step,treatment,control_value,status,"), "{table}");
     assert_eq!(table.lines().count(), 25);
