@@ -60,13 +60,13 @@ pub(super) fn page(record: &StudyRecord) -> Page<Body> {
     let failed = record.rows.iter().filter(|row| row.get("status").is_some_and(|status| status == "not_converged"));
     let failed = failed.count();
     let status = if failed == 0 { "all converged".to_owned() } else { format!("{failed} not converged") };
-    let file = &record.source.file;
+    let path = std::path::Path::new(&record.source.file);
+    let file = path.file_name().unwrap_or(path.as_os_str()).display();
     let steps = serde_json::to_string_pretty(&record.treatments).ok();
     Page {
         title: format!("Study: {file}"),
         subtitle: format!(
-            "{} under {}, at {}",
-            file,
+            "{file} under {}, at {}",
             count(record.treatments.len(), "treatment"),
             count(record.loads.len(), "pressure")
         ),

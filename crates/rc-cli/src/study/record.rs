@@ -64,17 +64,14 @@ pub(crate) fn words(value: f64, unit: &'static str) -> String {
 impl StudyRecord {
     /// A table for each load.
     pub(super) fn text(&self) -> String {
-        let mut text = String::new();
-        for load in &self.loads {
+        let titles = ["as prepared", "mesh bar", "treatment_low", "treatment_high"];
+        let titles = format!("  {:<24}{:<14}{:<14}{:<16}{}\n", "result", titles[0], titles[1], titles[2], titles[3]);
+        let table = |load: &LoadRanges| {
             let n = count(load.n_treatments, "treatment");
-            text += &format!("  mean pressure {}, {n}\n", engineering(load.pressure, "Pa"));
-            text += &format!(
-                "  {:<24}{:<14}{:<14}{:<16}{:<16}\n",
-                "result", "as prepared", "mesh bar", "treatment_low", "treatment_high"
-            );
-            text.extend(load.results.iter().map(line));
-            text.push('\n');
-        }
+            let lines: String = load.results.iter().map(line).collect();
+            format!("  mean pressure {}, {n}\n{titles}{lines}\n", engineering(load.pressure, "Pa"))
+        };
+        let text: String = self.loads.iter().map(table).collect();
         let skipped = self.skipped.iter().map(|one| format!("  left out: {} ({})\n", one.treatment, one.reason));
         text + &skipped.collect::<String>()
     }

@@ -44,26 +44,26 @@ impl Base<'_> {
     /// # Errors
     /// [`CliError::Input`] when `resample` is not a grid.
     pub(super) fn variants(&self) -> Result<Vec<Variant>, CliError> {
-        let mut all = vec![self.with("none", "as prepared", self.keys.clone())?];
+        let mut all = vec![self.with("none", "as prepared", self.keys)?];
         all.extend(self.fills()?);
         let levels = [Level::Plane, Level::Quadratic].into_iter().filter(|form| self.keys.level != Some(*form));
         for form in levels {
             let keys = TreatmentKeys { level: Some(form), ..self.keys.clone() };
-            all.push(self.with("level", &format!("level {form}"), keys)?);
+            all.push(self.with("level", &format!("level {form}"), &keys)?);
         }
         all.push(self.inserted("crop", &format!("middle {CROP} of each side"), self.smaller(), after_crops)?);
         all.extend(self.borders()?);
         all.extend(self.low_passes()?);
         for sigma in DESPIKE.into_iter().filter(|sigma| self.keys.despike != Some(*sigma)) {
             let keys = TreatmentKeys { despike: Some(sigma), ..self.keys.clone() };
-            all.push(self.with("despike", &format!("despike {sigma}"), keys)?);
+            all.push(self.with("despike", &format!("despike {sigma}"), &keys)?);
         }
         all.push(self.inserted("points", "every second point", Treatment::EverySecond, before_border)?);
         Ok(all)
     }
 
-    fn with(&self, step: &'static str, name: &str, keys: TreatmentKeys) -> Result<Variant, CliError> {
-        Ok(Variant { step, name: name.to_owned(), treatments: treatments(&keys)?, boundary: self.boundary })
+    fn with(&self, step: &'static str, name: &str, keys: &TreatmentKeys) -> Result<Variant, CliError> {
+        Ok(Variant { step, name: name.to_owned(), treatments: treatments(keys)?, boundary: self.boundary })
     }
 
     /// The unchanged treatments and one more, at the place that `at` finds.
@@ -74,7 +74,7 @@ impl Base<'_> {
         more: Treatment,
         at: fn(&[Treatment]) -> usize,
     ) -> Result<Variant, CliError> {
-        let mut variant = self.with(step, name, self.keys.clone())?;
+        let mut variant = self.with(step, name, self.keys)?;
         let at = at(&variant.treatments);
         variant.treatments.insert(at, more);
         Ok(variant)
@@ -89,7 +89,7 @@ impl Base<'_> {
             [Fill::Laplace, Fill::Nearest, Fill::Lowest].into_iter().filter(|how| self.keys.fill != Some(*how));
         others
             .map(|how| {
-                self.with("fill", &format!("fill {how}"), TreatmentKeys { fill: Some(how), ..self.keys.clone() })
+                self.with("fill", &format!("fill {how}"), &TreatmentKeys { fill: Some(how), ..self.keys.clone() })
             })
             .collect()
     }
@@ -103,19 +103,19 @@ impl Base<'_> {
                 continue;
             }
             let keys = TreatmentKeys { periodic: Some(how), ..self.keys.clone() };
-            let variant = self.with("border", &format!("periodic {name}"), keys)?;
+            let variant = self.with("border", &format!("periodic {name}"), &keys)?;
             all.push(Variant { boundary: Some(Boundary::Periodic), ..variant });
         }
         if !is_patch {
             let keys = TreatmentKeys { periodic: None, ..self.keys.clone() };
-            all.push(Variant { boundary: Some(Boundary::Free), ..self.with("border", "free patch", keys)? });
+            all.push(Variant { boundary: Some(Boundary::Free), ..self.with("border", "free patch", &keys)? });
         }
         Ok(all)
     }
 
     /// Low-pass filters of other lengths.
     fn low_passes(&self) -> Result<Vec<Variant>, CliError> {
-        let with = |name: &str, low_pass| self.with("low-pass", name, TreatmentKeys { low_pass, ..self.keys.clone() });
+        let with = |name: &str, low_pass| self.with("low-pass", name, &TreatmentKeys { low_pass, ..self.keys.clone() });
         if let Some(length) = self.keys.low_pass {
             return Ok(vec![with("no low-pass", None)?, with("low-pass, twice the length", Some(2.0 * length))?]);
         }
