@@ -10,6 +10,7 @@ use crate::plot::PlotArgs;
 use crate::prepare::args::PrepareArgs;
 use crate::report::args::ReportArgs;
 use crate::solve::args::SolveArgs;
+use crate::study::args::StudyArgs;
 use crate::surface::args::SurfaceArgs;
 use crate::sweep::args::SweepArgs;
 
@@ -39,6 +40,8 @@ pub(crate) enum Command {
     Surface(SurfaceArgs),
     /// The usual treatments of a measured map, for rc solve, with pictures of what they did
     Prepare(Box<PrepareArgs>),
+    /// One contact under varied treatments of a measured map: how much the results depend on them
+    Study(Box<StudyArgs>),
     /// Statistics of a surface or a result: rms, slopes, spectrum, distributions
     Inspect(InspectArgs),
     /// Pictures of a result or a surface

@@ -38,6 +38,7 @@ mod prepare;
 mod report;
 pub mod run;
 pub mod solve;
+mod study;
 pub mod surface;
 pub mod sweep;
 mod terminal;
@@ -93,6 +94,7 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
         Command::Sweep(args) => sweep::run(*args),
         Command::Surface(args) => surface::run(args),
         Command::Prepare(args) => prepare::command::run(*args),
+        Command::Study(args) => study::command::run(*args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Plot(args) => plot::run(&args),
         Command::Report(args) => report::run(&args),

@@ -98,5 +98,5 @@ pub use shard::{Shard, SweepShape};
 pub use summary::{SolveContext, Summary, to_json};
 pub use surfaces::{SurfaceError, SweptContact, SweptSurface};
 pub use sweep::Sweep;
-pub use table::n_not_converged;
+pub use table::{n_not_converged, to_csv};
 pub use warning::{Warning, WarningCode};

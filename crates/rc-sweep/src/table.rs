@@ -23,7 +23,10 @@ pub(crate) fn write(folder: &Path, rows: &SweepRows) -> Result<PathBuf, SweepErr
 }
 
 /// The rows as CSV with a line of column names. Numbers have the digits of the journal.
-pub(crate) fn to_csv(rows: &SweepRows) -> Result<Vec<u8>, String> {
+///
+/// # Errors
+/// The cause, when a row has another number of cells than the first.
+pub fn to_csv(rows: &SweepRows) -> Result<Vec<u8>, String> {
     let mut out = csv::Writer::from_writer(Vec::new());
     if let Some(first) = rows.values().next() {
         out.write_record(first.keys()).map_err(|cause| cause.to_string())?;

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Arg, Args};
-use rc_core::GridError;
 use rc_heights::{Crop, Fill, Level, Treatment};
 
+use crate::error::CliError;
 use crate::scene::keys::{RunKeys, SurfaceKeys};
 use crate::surface::treatment::{DESPIKE, PeriodicName, TreatmentKeys};
 
@@ -21,15 +21,23 @@ pub(crate) struct PrepareArgs {
     /// How the file is read.
     #[command(flatten)]
     pub(crate) surface: SurfaceKeys,
-    /// What is done instead of the usual treatments, or besides.
+    /// The treatments.
     #[command(flatten)]
-    pub(crate) treatment: TreatmentKeys,
-    /// What is not done.
-    #[command(flatten)]
-    pub(crate) without: Without,
+    pub(crate) steps: Steps,
     /// Threads and output.
     #[command(flatten)]
     pub(crate) run: RunKeys,
+}
+
+/// The usual treatments, as flags change them.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct Steps {
+    /// What is done instead of the usual treatments, or besides.
+    #[command(flatten)]
+    treatment: TreatmentKeys,
+    /// What is not done.
+    #[command(flatten)]
+    without: Without,
 }
 
 /// The usual treatments that are left out.
@@ -54,32 +62,42 @@ pub(crate) struct Without {
     no_periodic: bool,
 }
 
-impl PrepareArgs {
-    /// The usual treatments, with those that are given instead of them or besides, in the order of their application.
-    ///
-    /// # Errors
-    /// When `resample` is not a grid.
-    pub(crate) fn treatments(&self) -> Result<Vec<Treatment>, GridError> {
+impl Steps {
+    /// The steps for a patch with free borders, which is not made periodic unless a flag says so.
+    pub(crate) fn for_patch(mut self) -> Self {
+        self.without.no_periodic |= self.treatment.periodic.is_none();
+        self
+    }
+
+    /// The usual treatments, with those that are given instead of them or besides.
+    pub(crate) fn keys(&self) -> TreatmentKeys {
         let (given, without) = (&self.treatment, self.without);
-        let usual = TreatmentKeys {
+        TreatmentKeys {
             crop: given.crop.or((!without.no_crop).then_some(Crop::Measured)),
             despike: given.despike.or((!without.no_despike).then_some(DESPIKE)),
             level: given.level.or((!without.no_level).then_some(Level::Plane)),
             fill: given.fill.or((!without.no_fill).then_some(Fill::Laplace)),
             periodic: given.periodic.or((!without.no_periodic).then_some(PeriodicName::Mirror)),
             ..given.clone()
-        };
-        let mut treatments = usual.treatments()?;
-        if given.crop == Some(Crop::Square) {
-            // The square is one of measured points. Numbers of points are those of the file.
-            treatments.insert(0, Treatment::Crop(Crop::Measured));
         }
-        Ok(treatments)
     }
 }
 
+/// The treatments of `keys` for a map as read, in the order of their application.
+///
+/// # Errors
+/// [`CliError::Input`] when `resample` is not a grid.
+pub(crate) fn treatments(keys: &TreatmentKeys) -> Result<Vec<Treatment>, CliError> {
+    let mut treatments = keys.treatments().map_err(|cause| CliError::input(format_args!("resample: {cause}")))?;
+    if keys.crop == Some(Crop::Square) {
+        // The square is one of measured points. Numbers of points are those of the file.
+        treatments.insert(0, Treatment::Crop(Crop::Measured));
+    }
+    Ok(treatments)
+}
+
 /// Hides the keys of generated surfaces, and those that the file or the treatments determine.
-fn without_generated(arg: Arg) -> Arg {
+pub(crate) fn without_generated(arg: Arg) -> Arg {
     const HIDDEN: [&str; 19] = [
         "heights",
         "spectrum",

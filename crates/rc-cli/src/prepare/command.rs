@@ -7,7 +7,7 @@ use rc_sweep::files::Staged;
 use rc_sweep::memory::Budget;
 use rc_sweep::{files, to_json};
 
-use super::args::PrepareArgs;
+use super::args::{PrepareArgs, treatments};
 use super::pictures;
 use super::record::PrepareRecord;
 use crate::error::CliError;
@@ -28,7 +28,7 @@ pub(crate) fn run(args: PrepareArgs) -> Result<(), CliError> {
     if args.run.time_limit.is_some() {
         return Err(CliError::input("time_limit: rc prepare has none; omit --time-limit"));
     }
-    let treatments = args.treatments().map_err(|cause| CliError::input(format_args!("resample: {cause}")))?;
+    let treatments = treatments(&args.steps.keys())?;
     let flags = Scene { surface: args.surface, contact: ContactKeys::default(), run: args.run };
     let Scene { surface, run, .. } = resolve::layers(Some(&args.file), flags)?;
     threads::start(run.threads)?;
@@ -43,7 +43,7 @@ pub(crate) fn run(args: PrepareArgs) -> Result<(), CliError> {
     refuse(&surface.warnings, run.strict, "; nothing was written")?;
     tell(&surface.warnings, &run);
     let record = PrepareRecord::new(&surface, &prepared.effects);
-    let mut staged = stage_folder(folder, &prepared.surface, &heights, &surface, prepared.side)?;
+    let mut staged = stage_folder(folder, &prepared.surface, &heights, &surface, prepared.cell.side())?;
     add_pictures(&mut staged, before, &prepared, &treatments)?;
     staged.add_text(PREPARE_FILE, &to_json(&record))?;
     staged.commit()?;

@@ -16,6 +16,7 @@ const SCRIPT: &str = concat!(
     include_str!("../../assets/report/sweep.js"),
     include_str!("../../assets/report/surface.js"),
     include_str!("../../assets/report/mean.js"),
+    include_str!("../../assets/report/study.js"),
     include_str!("../../assets/report/page.js"),
 );
 

@@ -1,7 +1,8 @@
 //! `rc report`: one page of a result, a surface, a sweep or a mean, for a browser.
 //!
 //! The page needs no network. It is a frame ([`document`]), a script, and data. [`contact`] makes the data of a solve,
-//! [`surface`] those of a surface, [`curves`] those of a sweep, and [`mean`] those of a mean over realisations. All
+//! [`surface`] those of a surface, [`curves`] those of a sweep, [`mean`] those of a mean over realisations, and [`study`]
+//! those of a study. All
 //! texts are made here, and the script shows them as text. The script draws maps and charts from numbers.
 
 pub(crate) mod args;
@@ -17,6 +18,7 @@ mod mean;
 mod page;
 mod percolation;
 mod spot_sizes;
+mod study;
 mod surface;
 
 use std::path::Path;
@@ -26,11 +28,17 @@ use crate::error::CliError;
 use crate::files::names::SUMMARY_FILE;
 use crate::files::result::no_folder;
 use crate::inspect::{folder_of, is_scene};
+use crate::study::record::StudyRecord;
 use crate::terminal;
 use rc_sweep::{TABLE_FILE, files, settings_in};
 
 /// Name of the page in a folder.
-const PAGE_FILE: &str = "report.html";
+pub(crate) const PAGE_FILE: &str = "report.html";
+
+/// The page of a study.
+pub(crate) fn of_study(record: &StudyRecord) -> String {
+    document::html(&study::page(record))
+}
 
 /// The page of what is in `folder`.
 fn html(folder: &Path, quiet: bool) -> Result<String, CliError> {

@@ -52,15 +52,15 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
 
 /// Writes and prints the surface.
 fn write(prepared: &Prepared, run: &RunKeys) -> Result<(), CliError> {
-    let Prepared { surface, side, .. } = prepared;
+    let Prepared { surface, cell, .. } = prepared;
     let heights = surface.heights()?;
     let record = prepared.record(&heights);
     refuse(&record.warnings, run.strict, "; nothing was written")?;
     tell(&record.warnings, run);
     let target = run.out.as_deref();
     match target {
-        Some(target) if is_map(target) => write_map(target, surface, &heights, *side)?,
-        Some(folder) => stage_folder(folder, surface, &heights, &record, *side)?.commit()?,
+        Some(target) if is_map(target) => write_map(target, surface, &heights, cell.side())?,
+        Some(folder) => stage_folder(folder, surface, &heights, &record, cell.side())?.commit()?,
         None => {}
     }
     match (run.json, run.quiet) {
@@ -75,5 +75,5 @@ fn untreated(keys: SurfaceKeys) -> Result<Prepared, CliError> {
     let setup = resolve::surface(keys)?;
     let mut surface = setup.load()?;
     let (warnings, notes) = (std::mem::take(&mut surface.warnings), std::mem::take(&mut surface.notes));
-    Ok(Prepared { surface, side: setup.cell.side(), effects: Vec::new(), warnings, notes })
+    Ok(Prepared { surface, cell: setup.cell, effects: Vec::new(), warnings, notes })
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use rc_core::PeriodicCell;
 use rc_heights::{Effect, HeightMap, TreatError, Treatment};
 use rc_sweep::memory::Budget;
 use rc_sweep::{Warning, WarningCode};
@@ -15,10 +16,11 @@ use crate::scene::{heights, origin, resolve};
 use crate::warnings::surface as doubts;
 
 /// A map in metres with the size of its cell, before its treatments.
+#[derive(Clone)]
 pub(crate) struct MapRead {
     pub(crate) map: HeightMap,
-    path: PathBuf,
-    keys: SurfaceKeys,
+    pub(crate) path: PathBuf,
+    pub(crate) keys: SurfaceKeys,
     /// Doubts about the map, and what was assumed about it.
     warnings: Vec<Warning>,
     /// What the reader did.
@@ -28,8 +30,7 @@ pub(crate) struct MapRead {
 /// A surface in its cell, with the effects of its treatments.
 pub(crate) struct Prepared {
     pub(crate) surface: LoadedSurface,
-    /// Side of the cell along x (m).
-    pub(crate) side: f64,
+    pub(crate) cell: PeriodicCell,
     /// Statistics of a height map before the treatments and after each; empty without treatments.
     pub(crate) effects: Vec<Effect>,
     /// Doubts about the map as read, and about its treatments.
@@ -41,7 +42,7 @@ pub(crate) struct Prepared {
 impl Prepared {
     /// The record of the surface, whose heights are given in λ.
     pub(crate) fn record(&self, heights: &rc_core::Field) -> SurfaceRecord {
-        let record = SurfaceRecord::of(heights, self.side, self.surface.moments(heights));
+        let record = SurfaceRecord::of(heights, self.cell.side(), self.surface.moments(heights));
         let warnings = [&self.warnings[..], &record.shape().warnings()].concat();
         SurfaceRecord {
             treatments: self.effects.iter().map(TreatmentRow::from).collect(),
@@ -100,7 +101,7 @@ pub(crate) fn treat(read: MapRead, treatments: &[Treatment], budget: Budget) -> 
     warnings.extend(filled(treatments, &effects));
     warnings.extend(doubts::of_record(&path));
     surface.origin = Some(origin);
-    Ok(Prepared { surface, side: setup.cell.side(), effects, warnings, notes })
+    Ok(Prepared { surface, cell: setup.cell, effects, warnings, notes })
 }
 
 /// A map in metres after treatments that are checked, and the doubts that `rc surface` has about it.

@@ -11,10 +11,11 @@ mod merge;
 mod messages;
 mod part;
 mod planned;
-mod problems;
+pub(crate) mod problems;
 mod realisations;
 mod results;
 mod rows;
+pub(crate) mod solved;
 mod specs;
 mod surfaces;
 mod varied;
@@ -28,15 +29,10 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use rc_core::quantity::{count, digits};
-use rc_sweep::memory::Budget;
-use rc_sweep::{Shard, Sweep, Workers, to_json};
+use rc_sweep::{Shard, Sweep, to_json};
 
 use self::args::{SweepArgs, SweepCommand};
-use self::bar::RowBar;
-use self::doubts::Doubts;
-use self::problems::SceneProblems;
-use self::results::Results;
-use self::rows::SweepResults;
+use self::solved::HowRows;
 use self::surfaces::Surfaces;
 use crate::error::CliError;
 use crate::terminal;
@@ -73,16 +69,8 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
     let (started, threads) = (Instant::now(), surfaces.threads);
     let n_rows = sweep.n_rows();
     let n_before = n_rows - sweep.todo().len();
-    let bar = RowBar::new(n_before, n_rows, surfaces.run.quiet);
-    let handled = (Arc::clone(sweep), bar.clone());
-    interrupt::install(move || interrupt::end(&handled.0.kept(), Some(n_rows), &handled.1));
-    let doubts = Doubts::default();
-    let budget = Budget::new(surfaces.run.memory_limit);
-    let results = SweepResults { sweep, results: Results::new(threads, &doubts, surfaces.run.time_limit, bar.clone()) };
-    let workers = Workers { threads, at_once: budget.solves_at_once(surfaces.max_elements()) };
-    let finished = sweep.solve(&SceneProblems::new(surfaces, budget), &results, workers);
-    bar.clear();
-    let table = finished.map_err(messages::of_run)?;
+    let how = HowRows { run: &surfaces.run, threads, max_elements: surfaces.max_elements() };
+    let solved = solved::rows(surfaces, sweep, how)?;
     let kept = sweep.kept();
     match (surfaces.run.json, surfaces.run.quiet) {
         (true, _) => terminal::print(&to_json(&kept.rows().values().collect::<Vec<_>>()))?,
@@ -90,7 +78,7 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
         (false, false) => {
             let seconds = digits(started.elapsed().as_secs_f64(), 3);
             let before = if n_before > 0 { format!(" ({n_before} kept from before)") } else { String::new() };
-            let table = table.display();
+            let table = solved.table.display();
             let finished = kept.rows().len();
             let rows = if finished < n_rows {
                 format!("{finished} of {}", count(n_rows, "row"))
@@ -101,20 +89,21 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
             terminal::print(&format!("{rows}{before} in {seconds} s, {threads}\n\nwritten to {table}\n"))?;
         }
     }
-    let doubted = doubts.tell(&surfaces.run);
-    if let (missing @ 1.., Some(limit)) = (n_rows - kept.rows().len(), surfaces.run.time_limit) {
-        return Err(messages::out_of_time(limit, missing, n_rows));
-    }
-    messages::check_converged(kept.rows(), &table).and(doubted)
+    solved.verdict(kept.rows(), n_rows, &surfaces.run)
 }
 
 #[cfg(test)]
 mod tests {
     use clap::{Args as _, FromArgMatches as _};
-    use rc_sweep::{RunError, SweepRow, TABLE_FILE};
+    use rc_sweep::memory::Budget;
+    use rc_sweep::{RunError, SweepRow, TABLE_FILE, Workers};
     use serde_json::json;
 
-    use super::problems::RowScenes;
+    use super::bar::RowBar;
+    use super::doubts::Doubts;
+    use super::problems::{RowScenes, SceneProblems};
+    use super::results::Results;
+    use super::rows::SweepResults;
     use super::*;
     use crate::scene::loaded::LoadedSurface;
     use crate::scene::resolve::ContactSetup;

@@ -15,7 +15,7 @@ use crate::scene::resolve::ContactSetup;
 use crate::solve::solved::{ProblemSetup, Solved};
 
 /// Scenes with the surface and the contact of each row.
-pub(super) trait RowScenes<R>: Sync {
+pub(crate) trait RowScenes<R>: Sync {
     /// Reads or generates the surface of `row`.
     ///
     /// # Errors

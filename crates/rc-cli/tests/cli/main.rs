@@ -18,6 +18,7 @@ mod solids;
 mod solve;
 mod spectrum;
 mod stopped;
+mod study;
 mod support;
 mod sweep;
 mod sweep_damaged;

@@ -109,3 +109,37 @@ pub(super) fn crop(map: &HeightMap, crop: Crop) -> Result<HeightMap, TreatError>
     let sides = map.sides.map(|_| [dx * nx as f64, dy * ny as f64]);
     Ok(HeightMap { heights, sides, ..map.clone() })
 }
+
+/// The grid of every second point of `grid`.
+pub(super) fn every_second(grid: Grid) -> Result<Grid, TreatError> {
+    Ok(Grid::new(grid.nx() / 2, grid.ny() / 2)?)
+}
+
+/// The map of every second point, from the first on.
+pub(super) fn thin(map: &HeightMap) -> Result<HeightMap, TreatError> {
+    let [dx, dy] = map.spacing();
+    let grid = every_second(map.heights.grid())?;
+    let (nx, ny) = (grid.nx(), grid.ny());
+    let values = (0..ny).flat_map(|iy| map.heights.row(2 * iy).iter().step_by(2).take(nx)).copied().collect();
+    let heights = Field::new(grid, values).expect("as many values as points");
+    let sides = map.sides.map(|_| [2.0 * dx * nx as f64, 2.0 * dy * ny as f64]);
+    Ok(HeightMap { heights, sides, ..map.clone() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::treat::{Treatment, apply, grids_after};
+
+    #[test]
+    fn every_second_point_has_twice_the_spacing() {
+        let grid = Grid::new(5, 4).expect("a grid");
+        let heights = Field::new(grid, (0..20).map(f64::from).collect()).expect("a field");
+        let map = HeightMap { sides: Some([10.0, 4.0]), ..HeightMap::bare(heights) };
+        let (thin, effects) = apply(map.clone(), &[Treatment::EverySecond]).expect("a map");
+        assert_eq!(thin.heights.values(), [0.0, 2.0, 10.0, 12.0]);
+        assert_eq!((thin.sides, effects[0].changed), (Some([8.0, 4.0]), 16));
+        let grids = grids_after(&map, &[Treatment::EverySecond]).expect("grids");
+        assert_eq!((grids[0].nx(), grids[0].ny()), (2, 2));
+    }
+}

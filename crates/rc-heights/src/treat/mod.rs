@@ -91,7 +91,7 @@ pub fn apply(map: HeightMap, treatments: &[Treatment]) -> Result<(HeightMap, Vec
         }
         let effect = Effect::of(&map, &format!("{treatment}{note}"));
         let changed = match treatment {
-            Treatment::Crop(_) => before - effect.grid.len(),
+            Treatment::Crop(_) | Treatment::EverySecond => before - effect.grid.len(),
             Treatment::Despike { .. } => removed.len(),
             Treatment::Fill(_) => missing - effect.missing,
             Treatment::Periodic(Periodic::AsIs | Periodic::Mirror) | Treatment::Repeat(_) => 0,
@@ -119,6 +119,10 @@ pub fn grids_after(map: &HeightMap, treatments: &[Treatment]) -> Result<Vec<Grid
                 let ratio = |n: usize, wanted: usize| n as f64 / wanted as f64;
                 spacing = [spacing[0] * ratio(grid.nx(), wanted.nx()), spacing[1] * ratio(grid.ny(), wanted.ny())];
                 wanted
+            }
+            Treatment::EverySecond => {
+                spacing = spacing.map(|length| 2.0 * length);
+                crop::every_second(grid)?
             }
             Treatment::Repeat(repeat) => {
                 let sides = [spacing[0] * grid.nx() as f64, spacing[1] * grid.ny() as f64];
@@ -161,6 +165,7 @@ fn one(map: HeightMap, treatment: Treatment, edges: Edges) -> Result<Treated, Tr
         Treatment::LowPass { wavelength } => low_pass::low_pass(map, wavelength, edges),
         Treatment::HighPass { wavelength } => high_pass::high_pass(map, wavelength, edges),
         Treatment::Resample(grid) => Ok(resample::resample(map, grid, edges)),
+        Treatment::EverySecond => crop::thin(&map),
         Treatment::Repeat(times) => repeat::repeat(&map, times),
     };
     treated.map(|map| (map, String::new(), Vec::new()))

@@ -39,6 +39,10 @@ pub enum Treatment {
     },
     /// Change the numbers of points on the same rectangle.
     Resample(Grid),
+    /// Keep every second point along both axes, as of a measurement with twice the spacing.
+    ///
+    /// A last point without a successor goes too.
+    EverySecond,
     /// Put copies beside each other.
     Repeat(Repeat),
 }
@@ -55,6 +59,7 @@ impl fmt::Display for Treatment {
             Self::LowPass { wavelength } => write!(f, "low-pass {wavelength:e}"),
             Self::HighPass { wavelength } => write!(f, "high-pass {wavelength:e}"),
             Self::Resample(grid) => write!(f, "resample {grid}"),
+            Self::EverySecond => f.write_str("every second point"),
             Self::Repeat(repeat) => write!(f, "repeat {repeat}"),
         }
     }
