@@ -143,10 +143,17 @@ impl CellOfMap {
         self.with(x, y, points)
     }
 
-    /// The same assumptions with these sides.
+    /// The same assumptions with these sides. Spacings that are nearly equal are equal, because the adaptive method needs
+    /// squares, and no instrument is calibrated better than [`SAME_LENGTH`].
     fn with(self, x: Option<f64>, y: Option<f64>, points: [usize; 2]) -> Self {
-        let is_square = points[0] == points[1] && x.zip(y).is_none_or(|(x, y)| same(x, y));
-        Self { cell: x, cell_y: if is_square { None } else { y }, ..self }
+        let [nx, ny] = points.map(|n| n as f64);
+        let has_squares = x.zip(y).is_none_or(|(x, y)| same(x / nx, y / ny));
+        let cell_y = match (has_squares, points[0] == points[1]) {
+            (true, true) => None,
+            (true, false) => x.map(|x| x * (ny / nx)).or(y),
+            (false, _) => y,
+        };
+        Self { cell: x, cell_y, ..self }
     }
 }
 
@@ -208,6 +215,8 @@ mod tests {
         assert_eq!(cell(&square(Some([1e-3, 2e-3])), [None, Some(2e-3)]), Ok([Some(1e-3), Some(2e-3)]));
         // Without the side along y, a later reading would assume equal spacings.
         assert_eq!(cell(&map(8, 4, Some([1e-3, 1e-3])), none), Ok([Some(1e-3), Some(1e-3)]));
+        let nearly = cell(&map(8, 4, Some([1e-3, 0.50003e-3])), none);
+        assert_eq!(nearly, Ok([Some(1e-3), Some(0.5e-3)]), "elements 0.006 % off square are squares");
         let contradictions = [([Some(2e-3), None], "cell says 2 mm"), ([None, Some(3e-3)], "cell_y says 3 mm")];
         for (given, expected) in contradictions {
             let error = cell(&square(Some([1e-3, 1e-3])), given).expect_err(expected).to_string();
