@@ -61,7 +61,8 @@ def _plain(name: str, value: Any) -> Any:
 def with_absolute_files(keys: dict[str, Any]) -> dict[str, Any]:
     """The keys with absolute paths of the files of a surface, since the working directory may be another one later."""
     files = (*SURFACE_FILES, "add")
-    return {name: os.path.abspath(value) if name in files else value for name, value in keys.items()}
+    named = {name for name in files if isinstance(keys.get(name), str)}
+    return {name: os.path.abspath(value) if name in named else value for name, value in keys.items()}
 
 
 def length(name: str, value: Any) -> float:

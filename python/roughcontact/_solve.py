@@ -26,7 +26,7 @@ from roughcontact._keys import (
     Shape,
     plain,
 )
-from roughcontact._maps import Heights, map_parts
+from roughcontact._maps import Heights, as_heights, map_parts
 from roughcontact._result import Result, told
 from roughcontact._run import Bar, Interrupted, NotConvergedError, NotConvergedWarning, ProgressOption, callback, checked
 from roughcontact._surface import Surface
@@ -71,7 +71,7 @@ def solve(
     angle: Quantity | None = None,
     wavelength: Quantity | None = None,
     wave_amplitude: Quantity | None = None,
-    add: Path | None = None,
+    add: Path | Heights | None = None,
     grid: Grid | None = None,
     young: Quantity | None = None,
     poisson: float | None = None,
@@ -121,6 +121,7 @@ def solve(
         A generated surface instead of ``heights``, as for :class:`Surface`.
     shape, radius, angle, wavelength, wave_amplitude, add : optional
         A shape, and the map of the other body, that are added to the surface, or a shape alone, as for :class:`Surface`.
+        Beside an array of ``heights`` (m), ``add`` may be an array too.
     grid : int, (int, int) or str, optional
         Finest elements along x and y. Default: 32 per shortest wave, or the points of a map.
     young, poisson : float, optional
@@ -293,4 +294,11 @@ def surface_of(heights: Any, keys: dict[str, Any]) -> Problem:
         if name in keys:
             raise ValueError(f"{name}: is for files; omit it, because the heights are an array (m)")
     array, sides, doubts = map_parts(heights)
+    other = keys.get("add")
+    if other is not None and not isinstance(other, (str, os.PathLike)):
+        second = as_heights(other)
+        if second.shape != array.shape:
+            raise ValueError(f"add: must have the shape of the heights, {array.shape}, not {second.shape}")
+        array = array + second[:, ::-1]
+        keys = {name: value for name, value in keys.items() if name != "add"}
     return Problem(keys, array, sides, doubts)

@@ -83,7 +83,7 @@ def sweep(
     angle: Quantity | None = None,
     wavelength: Quantity | None = None,
     wave_amplitude: Quantity | None = None,
-    add: Path | None = None,
+    add: Path | Heights | None = None,
     grid: Grid | None = None,
     young: Quantity | None = None,
     poisson: float | None = None,

@@ -41,6 +41,14 @@ def test_a_sum_is_saved_and_repeated(more, tmp_path, monkeypatch):
         assert np.array_equal(again.pressure, result.pressure)
 
 
+def test_the_other_body_may_be_an_array():
+    assert np.array_equal(rc.solve(MAP, add=2 * MAP, **PATCH).pressure, rc.solve(MAP + 2 * MAP[:, ::-1], **PATCH).pressure)
+    keys = {name: value for name, value in PATCH.items() if name != "pressure"}
+    assert rc.sweep(MAP, add=2 * MAP, pressures=[1e5], **keys)["area_fraction"][0] > 0
+    with pytest.raises(ValueError, match=r"add: must have the shape of the heights, \(32, 32\), not \(32, 30\)"):
+        rc.solve(MAP, add=MAP[:, :30], **PATCH)
+
+
 def test_units_that_do_not_fit_are_named():
     with pytest.raises(ValueError, match="pressure: must be a pressure in Pa.*not '5mm', which is a length"):
         rc.solve(waves=4, pressure="5mm")

@@ -35,7 +35,7 @@ def test_sweep_and_surface_have_the_keywords_of_solve():
     assert set(sweep) - own == set(solve) - one
     for name in set(sweep) - own:
         assert sweep[name].annotation == solve[name].annotation, name
-    for name in of(rc.Surface):
+    for name in of(rc.Surface).keys() - {"add"}:  # only beside an array it is an array
         assert of(rc.Surface)[name].annotation == solve[name].annotation == of(rc.surface)[name].annotation, name
 
 

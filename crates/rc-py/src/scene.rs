@@ -90,7 +90,8 @@ pub(crate) fn value_of(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<V
         let instead = match key {
             "cell" => "; the other side is cell_y",
             "pressure" | "penetration" | "seed" => "; roughcontact.sweep solves for several",
-            "heights" | "add" => "; an array is the argument heights",
+            "heights" => "; an array is the argument heights",
+            "add" => "; an array needs an array of heights",
             _ => "",
         };
         let expected = match key {
