@@ -357,7 +357,7 @@ class Result:
         return StressDistribution(edges, density, area)
 
     def save(self, folder: Path) -> None:
-        """Write the files of ``rc solve --out``: summary, scene, fields, elements and a picture of the contact."""
+        """Write the files of ``rc solve --out``: summary, scene, fields and a picture of the contact."""
         self._source.save(os.fspath(folder))
 
     def report(self, path: Path) -> None:
@@ -396,11 +396,14 @@ class Result:
         with tempfile.TemporaryDirectory() as folder:
             self.save(folder)
             files = files_in(folder)
-        # With an output grid, the files have means.
-        averaged = np.load(io.BytesIO(files["pressure.npy"])).shape != self.pressure.shape
-        fields = {"pressure": self.pressure, "gap": self.gap} if averaged else {}
-        if averaged and (plastic := self.plastic_gap) is not None:
+        # With an output grid, the files have means, and with single precision other numbers.
+        written = np.load(io.BytesIO(files["pressure.npy"]))
+        differ = written.shape != self.pressure.shape or written.dtype != self.pressure.dtype
+        fields = {"pressure": self.pressure, "gap": self.gap} if differ else {}
+        if differ and (plastic := self.plastic_gap) is not None:
             fields["plastic_gap"] = plastic
+        if "elements.csv" not in files and (columns := self._source.elements()) is not None:
+            fields["elements"] = np.array(columns)
         return _stored, (files, fields, self.spots if self.border_level else None)
 
 

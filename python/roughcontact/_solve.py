@@ -94,6 +94,8 @@ def solve(
     leakage: bool | None = None,
     area_error: float | str | None = None,
     output_grid: Grid | None = None,
+    precision: Literal["single", "double"] | None = None,
+    elements: bool | None = None,
     threads: int | None = None,
     memory_limit: int | str | None = None,
     time_limit: float | str | None = None,
@@ -167,6 +169,10 @@ def solve(
         Wanted relative error of the contact area, which chooses the grid (random surfaces).
     output_grid : int, (int, int) or str, optional
         Elements along x and y to which :meth:`Result.save` averages pressure and gap.
+    precision : "single" or "double", optional
+        Type of the numbers in the files of :meth:`Result.save`. Default: "double".
+    elements : bool, optional
+        Whether :meth:`Result.save` also writes the elements of the adaptive mesh, :attr:`Result.mesh`, to elements.csv.
     threads : int, optional
         Worker threads of this call. Results do not depend on it. Default: all cores.
     memory_limit : int or str, optional

@@ -37,7 +37,8 @@ class Source(Protocol):
 class Stored:
     """The files of a result, byte for byte, as a pickle holds them.
 
-    Beside them are the fields of which the files hold only averages, and the spots, which do not follow from the files.
+    Beside them are the fields of which the files hold only averages or single precision, the elements if no file holds
+    them, and the spots, which do not follow from the files.
     """
 
     def __init__(self, files: dict[str, bytes], fields: dict[str, Floats], spots: list[ContactSpot] | None) -> None:
@@ -69,7 +70,7 @@ class Stored:
     def flux(self) -> list[Floats] | None:
         if FLUX_FILES[0] not in self.files:
             return None
-        return [np.load(io.BytesIO(self.files[name])) for name in FLUX_FILES]
+        return [_double(self.files[name]) for name in FLUX_FILES]
 
     def displacement(self) -> Floats:
         raise ValueError("displacement: a result that was read or unpickled does not have it; solve again")
@@ -78,7 +79,11 @@ class Stored:
         raise ValueError("spots: a result folder has no gap on the smallest elements (border_level); use spots of the result that solve returned")
 
     def elements(self) -> list[Floats] | None:
+        if "elements" in self.fields:
+            return list(self.fields["elements"])
         text = self.files.get("elements.csv")
+        if text is None and json.loads(self.summary_json())["method"] != "uniform":
+            raise ValueError("mesh: the folder has no elements.csv; solve again with elements=True (rc solve --elements)")
         if text is None:
             return None
         return list(np.loadtxt(io.BytesIO(text), delimiter=",", skiprows=1, ndmin=2).reshape(-1, 4).T)
@@ -94,8 +99,13 @@ class Stored:
     def _array(self, name: str) -> Floats:
         if name in self.fields:
             return self.fields[name]
-        array: Floats = np.load(io.BytesIO(self.files[name + ".npy"]))
-        return array
+        return _double(self.files[name + ".npy"])
+
+
+def _double(data: bytes) -> Floats:
+    """The array of a file, in double precision."""
+    array: Floats = np.load(io.BytesIO(data)).astype(np.float64, copy=False)
+    return array
 
 
 def files_in(folder: str) -> dict[str, bytes]:

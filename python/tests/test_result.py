@@ -88,6 +88,17 @@ def test_a_pickled_result_is_the_result(method, heights, tmp_path):
         copy.displacement  # noqa: B018
 
 
+def test_files_in_single_precision_and_a_mesh_that_no_file_holds(tmp_path):
+    result = rc.solve(waves=8, grid=128, pressure=1e5, precision="single")
+    result.save(tmp_path / "saved")
+    loaded, copied = rc.load(tmp_path / "saved"), pickle.loads(pickle.dumps(result))
+    assert loaded.pressure.dtype == np.float64 and np.array_equal(loaded.pressure, result.pressure.astype(np.float32))
+    assert np.array_equal(loaded.contact, result.contact)
+    assert np.array_equal(copied.pressure, result.pressure) and np.array_equal(copied.mesh.x, result.mesh.x)
+    with pytest.raises(ValueError, match="^mesh: the folder has no elements.csv"):
+        loaded.mesh  # noqa: B018
+
+
 def assert_same_fields(one, other):
     for name in ("pressure", "gap", "contact"):
         assert getattr(one, name).tobytes() == getattr(other, name).tobytes(), name
@@ -116,7 +127,7 @@ def test_a_pickle_has_the_fields_and_not_their_means_over_blocks(heights, tmp_pa
 @pytest.mark.parametrize("output_grid", [None, 32])
 def test_with_border_levels_contact_spots_and_stress_are_those_of_the_smallest_elements(output_grid, tmp_path):
     keys = {"waves": 8, "seed": 3, "pressure": 3e5, "method": "adaptive"}
-    result = rc.solve(**keys, grid=128, border_level=2, output_grid=output_grid)
+    result = rc.solve(**keys, grid=128, border_level=2, output_grid=output_grid, elements=True)
     assert result.pressure.shape == (128, 128) and result.contact.shape == (512, 512)
     # As the summary counts them, in the area of elements and between their centres.
     assert result.contact.mean() == pytest.approx(result.area_fraction_cells, rel=1e-12)

@@ -28,7 +28,7 @@ const SCENES: [&str; 2] = ["--grid=1024 --pressure=446395", "--grid=1024 --penet
 const LONG: &str = "--grid=4096 --pressure=446395";
 
 /// Flags of every scene.
-const COMMON: &str = "--waves=64 --method=adaptive --tolerance=1e-6 --quiet --threads=1";
+const COMMON: &str = "--waves=64 --method=adaptive --tolerance=1e-6 --quiet --threads=1 --elements";
 
 /// Files that are compared byte by byte.
 const FILES: [&str; 5] = ["pressure.npy", "gap.npy", "elements.csv", "contact.png", "scene.toml"];

@@ -16,7 +16,9 @@ use super::form::FormName;
 use super::names::{amplitudes, boundaries, methods, truncations};
 use super::quantity::{angle, force, length, pressure};
 use super::time_limit::TimeLimit;
-use super::values::{Conductivity, Fraction, GridSpec, HeightsLike, Marks, PsdConvention, ToleranceSpec};
+use super::values::{
+    Conductivity, FilePrecision, Fraction, GridSpec, HeightsLike, Marks, PsdConvention, ToleranceSpec,
+};
 use crate::help;
 
 /// The embedded example: the paper's surface with N = 64 at σ0/E* = 8.9e-4.
@@ -275,6 +277,18 @@ pub struct ContactKeys {
     /// Average pressure and gap to this many elements per side in the files
     #[arg(long, value_name = "N", help_heading = help::RESULTS, display_order = 100, allow_hyphen_values = true)]
     pub output_grid: Option<GridSpec>,
+    /// single or double numbers in the files of fields [default: double]
+    ///
+    /// single: half the size, with relative errors of 6e-8. Results are computed in double precision.
+    #[arg(long, value_name = "NAME", help_heading = help::RESULTS, display_order = 100, hide_short_help = true, hide_possible_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub precision: Option<FilePrecision>,
+    /// Write elements.csv: the elements of the adaptive mesh
+    ///
+    /// Centre (m), size (m) and pressure (Pa). rc export --vtk draws them.
+    #[arg(long, help_heading = help::RESULTS, display_order = 100, hide_short_help = true)]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub elements: bool,
 }
 
 /// How the command runs, and where its results go.

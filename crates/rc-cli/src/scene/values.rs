@@ -5,6 +5,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use clap::ValueEnum;
+use rc_heights::npy::Precision;
 use rc_solver::Tolerance;
 use rc_sweep::number_or_text;
 use serde::de::{self, Deserializer, Visitor};
@@ -186,6 +187,26 @@ pub enum HeightsLike {
     Gaussian,
     /// That of the map.
     Map,
+}
+
+/// Type of the numbers in files of fields.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum FilePrecision {
+    /// `float32`.
+    Single,
+    /// `float64`.
+    #[default]
+    Double,
+}
+
+impl From<FilePrecision> for Precision {
+    fn from(precision: FilePrecision) -> Self {
+        match precision {
+            FilePrecision::Single => Self::Single,
+            FilePrecision::Double => Self::Double,
+        }
+    }
 }
 
 /// The tolerance in its written form: a number or `auto`.

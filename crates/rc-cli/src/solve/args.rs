@@ -42,7 +42,7 @@ load of its own. Otherwise give --pressure, --penetration or --force, exactly on
 --heights its random surface. Relative paths in a scene file start at its folder.
 
 DIR (--out) receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene.toml, from which the result can be \
-repeated. The methods adaptive and gauss-seidel have elements of their own: they write elements.csv with \
+repeated. The methods adaptive and gauss-seidel have elements of their own: --elements writes them to elements.csv, with \
 the columns x, y, size (m) and pressure (Pa). Heights from a file are written as heights.npy. In the summary, iterations and operator_applications are those of the finest level.
 
 --leakage adds to the summary the flow of a thin film through the gap, Q = permeance ΔP/(12 viscosity), along x and along y. \

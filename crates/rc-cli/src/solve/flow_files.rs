@@ -20,7 +20,7 @@ pub(super) fn add(staged: &mut Staged, contact: &ContactSetup, leakage: &Leakage
     if let Some(flux) = &leakage.flux {
         for (name, field) in FLUX_FILES.into_iter().zip([&flux.x, &flux.y]) {
             staged.add(name, |path| {
-                let mut file = MapFile::create(path, grid, contact.keys.output_grid, side * side)?;
+                let mut file = MapFile::create(path, grid, &contact.keys, side * side)?;
                 file.take(field.values())?;
                 file.finish()
             })?;

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use rc_core::{DVec2, Field, Grid, Units};
-use rc_heights::npy::RowWriter;
+use rc_heights::npy::{Precision, RowWriter};
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution};
 use rc_sweep::files::{FileError, Staged};
@@ -108,7 +108,7 @@ impl ResultFiles<'_> {
     /// [`CliError::Write`].
     pub fn write(&self, folder: &Path, summary: &Summary) -> Result<(), CliError> {
         if self.solution.ranks().rank() > 0 {
-            hand_over(self.solution);
+            hand_over(self.contact, self.solution);
             return Ok(());
         }
         Ok(self.stage(folder, summary)?)
@@ -167,7 +167,7 @@ impl MapHeights<'_> {
             Self::InCell { heights, .. } => heights.grid(),
             Self::InMetres { grid, .. } => grid,
         };
-        let mut file = RowWriter::create(path, grid, 1.0)?;
+        let mut file = RowWriter::create(path, grid, 1.0, Precision::Double)?;
         let mut row = vec![0.0; grid.nx()];
         for iy in 0..grid.ny() {
             let first = iy * row.len();
@@ -185,37 +185,39 @@ impl MapHeights<'_> {
 }
 
 /// Hands over this rank's rows and elements, which the first rank writes in [`add_fields`].
-fn hand_over(solution: &Solution<'_>) {
+fn hand_over(contact: &ContactSetup, solution: &Solution<'_>) {
     let nothing = |_: usize, _: &[f64]| Ok::<_, Infallible>(());
     let Ok(()) = solution.pressure_rows(nothing);
     let Ok(()) = solution.gap_rows(nothing);
-    let Ok(()) = solution.each_element(|_| Ok::<_, Infallible>(()));
+    if contact.keys.elements {
+        let Ok(()) = solution.each_element(|_| Ok::<_, Infallible>(()));
+    }
     let Ok(()) = solution.pressure_rows(nothing);
 }
 
-/// Adds pressure, gap, its plastic part, elements and the picture of the contact.
+/// Adds pressure, gap, its plastic part, the elements if they are wanted, and the picture of the contact.
 fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'_>) -> Result<(), FileError> {
     let (units, grid) = (contact.units, solution.grid());
     let (side, e_star) = (units.cell().side(), units.elasticity().e_star());
-    let output_grid = contact.keys.output_grid;
+    let keys = &contact.keys;
     staged.add("pressure.npy", |path| {
-        let mut file = MapFile::create(path, grid, output_grid, e_star)?;
+        let mut file = MapFile::create(path, grid, keys, e_star)?;
         solution.pressure_rows(|_, rows| file.take(rows))?;
         file.finish()
     })?;
     staged.add("gap.npy", |path| {
-        let mut file = MapFile::create(path, grid, output_grid, side)?;
+        let mut file = MapFile::create(path, grid, keys, side)?;
         solution.gap_rows(|_, rows| file.take(rows))?;
         file.finish()
     })?;
     if solution.hardness().is_finite() {
         staged.add(PLASTIC_GAP_FILE, |path| {
-            let mut file = MapFile::create(path, grid, output_grid, side)?;
+            let mut file = MapFile::create(path, grid, keys, side)?;
             solution.plastic_gap_rows(|_, rows| file.take(rows))?;
             file.finish()
         })?;
     }
-    if solution.elements().is_some() {
+    if keys.elements && solution.elements().is_some() {
         staged.add("elements.csv", |path| write_elements(path, solution, units))?;
     }
     let mut picture = ContactRows::new(grid);

@@ -107,7 +107,7 @@ fn where_one_method_does_not_fit_into_memory_the_other_is_taken() {
 #[test]
 fn the_files_of_an_adaptive_solve_agree_with_its_summary() {
     let place = Place::new();
-    let summary = summary_of(&place.run(&scene(&["--json", "--out", "r"])));
+    let summary = summary_of(&place.run(&scene(&["--json", "--elements", "--out", "r"])));
     let (pressure, gap) = (field(&place, "r/pressure.npy"), field(&place, "r/gap.npy"));
     assert_close("mean pressure", pressure.mean(), 3e5, 1e-10);
     assert_close("max pressure", pressure.max(), number(&summary, "max_pressure"), 1e-14);
@@ -258,7 +258,7 @@ fn a_border_level_refines_edges_and_keeps_the_grid() {
     let place = Place::new();
     let scene = ["solve", "--waves", "8", "--grid", "128", "--pressure", PRESSURE, "--json"];
     let plain = summary_of(&place.run(&scene));
-    let output = place.run(&[&scene[..], &["--border-level", "2", "--out", "fine"]].concat());
+    let output = place.run(&[&scene[..], &["--border-level", "2", "--elements", "--out", "fine"]].concat());
     let fine = summary_of(&output);
     assert_eq!((&fine["grid"], &fine["border_level"]), (&plain["grid"], &2.into()));
     assert_eq!(reason(&fine), "adaptive: only the adaptive method halves elements at the edges of contacts");

@@ -16,7 +16,7 @@ fn field(place: &Place, name: &str) -> Field {
 #[test]
 fn a_result_is_exported_for_paraview() {
     let place = Place::new();
-    assert_solved(&place.run(&small("1e5", &["--out", "r"])));
+    assert_solved(&place.run(&small("1e5", &["--elements", "--out", "r"])));
     assert_solved(&place.run(&["export", "r", "--vtk", "--out", "vtk"]));
     assert_eq!(place.names("vtk"), ["elements.vtu", "fields.vti"]);
     let bytes = place.bytes("vtk/fields.vti");
@@ -110,7 +110,7 @@ fn large_fields_are_cut_into_chunks_and_put_together_again() {
 #[test]
 fn an_export_replaces_an_earlier_one_as_a_whole_and_no_other_folder() {
     let place = Place::new();
-    assert_solved(&place.run(&small("1e5", &["--out", "r"])));
+    assert_solved(&place.run(&small("1e5", &["--elements", "--out", "r"])));
     assert_solved(&place.run(&["export", "r", "--vtk", "--zarr", "--out", "z"]));
     assert_eq!(place.names("z"), ["elements.vtu", "fields.vti", "fields.zarr"]);
     place.write("z/fields.zarr/pressure/7.7", "a chunk of a larger field");

@@ -48,7 +48,9 @@ fn commands(document: &str) -> Vec<(usize, String)> {
 ///
 /// They are measured maps, a sphere, waves, a spectrum, a profile, scenes, and the file of an instrument.
 fn prepare(place: &Place) {
-    place.write("map.npy", npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
+    for name in ["map.npy", "first.npy", "second.npy"] {
+        place.write(name, npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
+    }
     let wide = |i: usize| (0.3 * (i % 128) as f64).sin() * 1e-6 + (0.2 * (i / 128) as f64).cos() * 1e-6;
     let wide = (0..128 * 64).flat_map(|i| wide(i).to_le_bytes()).collect::<Vec<u8>>();
     place.write("wide.npy", npy("<f8", false, "(64, 128)", &wide));

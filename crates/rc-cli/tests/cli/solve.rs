@@ -70,7 +70,7 @@ fn a_solve_fills_its_folder_and_prints_the_keys_in_order() {
     assert_solved(&output);
     assert_eq!(
         place.names("a/result"),
-        ["contact.png", "elements.csv", "gap.npy", "pressure.npy", "scene.toml", "summary.json"],
+        ["contact.png", "gap.npy", "pressure.npy", "scene.toml", "summary.json"],
         "files of the result"
     );
     assert_eq!(place.names("a"), ["result"], "something beside the result");
@@ -249,4 +249,22 @@ fn quiet_prints_nothing_and_a_summary_is_short() {
     );
     assert!(told.stderr.is_empty(), "progress without a terminal: {}", text(&told.stderr));
     assert!(place.names(".").is_empty(), "written without --out: {:?}", place.names("."));
+}
+
+#[test]
+fn single_precision_halves_the_fields_and_keeps_the_contact() {
+    let place = Place::new();
+    let solve = ["solve", "--waves", "8", "--grid", "128", "--pressure", "1e5", "--quiet"];
+    assert_solved(&place.run(&[&solve[..], &["--out", "double"]].concat()));
+    assert_solved(&place.run(&[&solve[..], &["--precision", "single", "--out", "single"]].concat()));
+    for name in ["pressure.npy", "gap.npy"] {
+        let read = |folder: &str| rc_heights::npy::read(&place.path(&format!("{folder}/{name}"))).expect("a field");
+        let bytes = |folder: &str| place.bytes(&format!("{folder}/{name}")).len() - 128;
+        assert_eq!(2 * bytes("single"), bytes("double"), "{name}");
+        for (single, double) in read("single").values().iter().zip(read("double").values()) {
+            assert!((single - double).abs() <= 6e-8 * double.abs(), "{name}: {single:e}, {double:e}");
+            assert_eq!(*single > 0.0, *double > 0.0, "{name}: {double:e}");
+        }
+    }
+    assert_solved(&place.run(&["report", "single", "--quiet"]));
 }

@@ -9,7 +9,7 @@ use rc_core::{Field, Grid};
 
 mod write;
 
-pub use self::write::{RowWriter, write};
+pub use self::write::{Precision, RowWriter, write};
 use super::channel::{Channel, only};
 use super::field::{field, transposed};
 use super::fields::shown_as_line;
@@ -326,11 +326,11 @@ mod tests {
     fn a_file_of_rows_has_all_of_them_or_is_an_error() {
         let dir = tempfile::tempdir().expect("a temporary folder");
         let (path, grid) = (dir.path().join("rows.npy"), Grid::new(3, 2).expect("a grid"));
-        let mut out = RowWriter::create(&path, grid, 2.0).expect("a file");
+        let mut out = RowWriter::create(&path, grid, 2.0, Precision::Double).expect("a file");
         out.write(&[1.0, 2.0, 3.0]).expect("a row");
         out.write(&[4.0, 5.0, 6.0]).expect("a row");
         assert!(out.write(&[7.0]).is_err(), "a value too many");
-        let mut out = RowWriter::create(&path, grid, 2.0).expect("a file");
+        let mut out = RowWriter::create(&path, grid, 2.0, Precision::Double).expect("a file");
         out.write(&[1.0, 2.0, 3.0]).expect("a row");
         assert!(out.finish().is_err(), "a row too few");
     }
