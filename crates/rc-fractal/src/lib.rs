@@ -41,6 +41,7 @@ mod radial;
 mod roughness;
 mod surface;
 mod table;
+mod texture;
 mod twin;
 mod waves;
 
@@ -52,5 +53,6 @@ pub use radial::{SpectrumBin, radial_spectrum};
 pub use rc_fft::Complex64;
 pub use surface::{SampleError, Surface};
 pub use table::{SpectrumTable, TableError};
+pub use texture::{Aspect, Texture};
 pub use twin::{Twin, TwinParams};
 pub use waves::{Wave, WaveError};

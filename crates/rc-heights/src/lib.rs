@@ -46,6 +46,7 @@
 mod error;
 mod formats;
 mod map;
+mod material_ratio;
 mod note;
 pub mod pairs;
 mod parameters;
@@ -62,6 +63,7 @@ pub use formats::{
     channels_of, format_of, gsf, mat_arrays, may_have_sides, npy, of_points, parse, parse_with, read, read_with, text,
 };
 pub use map::{BorderStep, HeightMap};
+pub use material_ratio::{CoreParameters, MaterialRatio};
 pub use note::ReadNote;
 pub use parameters::AreaParameters;
 pub use statistics::MapStatistics;

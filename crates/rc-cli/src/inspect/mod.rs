@@ -4,6 +4,7 @@ pub(crate) mod args;
 pub(crate) mod record;
 pub(crate) mod text;
 
+mod areal;
 mod pictures;
 
 use std::path::{Path, PathBuf};

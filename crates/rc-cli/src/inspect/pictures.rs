@@ -21,7 +21,7 @@ const TEXT: f64 = 26.0;
 
 /// Writes pictures of `heights` (in λ) and of the statistics in `record`.
 ///
-/// They are `surface.png`, and `spectrum` and `distribution` as PNG and SVG. A map with missing points has no spectrum.
+/// They are `surface.png`, and `spectrum`, `distribution` and `material_ratio` as PNG and SVG. A map with missing points has no spectrum.
 /// The result has the names of the pictures.
 ///
 /// # Errors
@@ -46,7 +46,10 @@ fn add(staged: &mut Staged, heights: &Field, record: &SurfaceRecord) -> Result<(
         staged.add("spectrum.svg", |path| save_svg(&spectrum, path))?;
     }
     staged.add("distribution.png", |path| save_png(&distribution, path))?;
-    staged.add("distribution.svg", |path| save_svg(&distribution, path))
+    staged.add("distribution.svg", |path| save_svg(&distribution, path))?;
+    let curve = MaterialCurve(record);
+    staged.add("material_ratio.png", |path| save_png(&curve, path))?;
+    staged.add("material_ratio.svg", |path| save_svg(&curve, path))
 }
 
 /// The spectrum C(q) with decimal logarithms on both axes.
@@ -104,6 +107,34 @@ impl Picture for Distribution<'_> {
             x: range(points.iter().map(|point| point.0)),
             y: (0.0, 1.05 * points.iter().fold(0.0_f64, |most, point| most.max(point.1))),
             series: vec![Series { name: "", points, colour: BLUE, style: LineStyle::Solid }],
+        };
+        draw_lines(area, &plot, TEXT)
+    }
+}
+
+/// The material ratio curve with the equivalent line of its core.
+struct MaterialCurve<'a>(&'a SurfaceRecord);
+
+impl Picture for MaterialCurve<'_> {
+    fn size(&self) -> (u32, u32) {
+        (1400, 1000)
+    }
+
+    fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
+        let (scale, areal) = (Scale::of(self.0.rms_height, "m"), &self.0.areal);
+        let points: Vec<(f64, f64)> = areal.curve.iter().map(|(r, h)| (100.0 * r, h / scale.factor)).collect();
+        let line = areal.equivalent_line().map(|(ratio, height)| (100.0 * ratio, height / scale.factor)).to_vec();
+        let heights = points.iter().chain(&line).map(|point| point.1);
+        let plot = LinePlot {
+            title: "Material ratio (Abbott curve)",
+            x_label: "material ratio (%)",
+            y_label: &format!("height about the mean ({})", scale.unit()),
+            x: (0.0, 100.0),
+            y: range(heights),
+            series: vec![
+                Series { name: "", points, colour: BLUE, style: LineStyle::Solid },
+                Series { name: "core", points: line, colour: RED, style: LineStyle::Dashed },
+            ],
         };
         draw_lines(area, &plot, TEXT)
     }

@@ -1,11 +1,14 @@
 //! Statistics of a height map in SI units, for `rc surface` and `rc inspect`.
 
+use std::borrow::Cow;
+
 use rc_core::{Field, Histogram};
 use rc_fractal::{HurstFit, Moments, SpectrumBin, fit_hurst, radial_spectrum};
 use rc_heights::{AreaParameters, BorderStep, Effect, MapStatistics};
 use rc_sweep::{MapOrigin, Warning};
 use serde::Serialize;
 
+use super::areal::ArealRow;
 use crate::warnings::surface::Shape;
 
 /// Statistics of a height map.
@@ -45,6 +48,9 @@ pub(crate) struct SurfaceRecord {
     pub(crate) distribution: Histogram,
     /// Parameters of ISO 25178-2 (m), from differences of neighbours, without a filter.
     pub(crate) parameters: AreaParameters,
+    /// Parameters of ISO 25178-2 from the material ratio curve and the autocorrelation.
+    #[serde(flatten)]
+    pub(crate) areal: ArealRow,
     /// Ratio of rms steps of heights: across the cell's border, to between inner neighbours.
     ///
     /// It is about 1 for a periodic map, and `None` if points are missing.
@@ -168,7 +174,9 @@ impl SurfaceRecord {
     pub(crate) fn of(heights: &Field, side: f64, moments: Moments) -> Self {
         let border = BorderStep::of(heights);
         let windowed = !border.is_periodic();
-        let rings = if windowed { radial_spectrum(&rc_heights::hann(heights)) } else { radial_spectrum(heights) };
+        let under_window = if windowed { Cow::Owned(rc_heights::hann(heights)) } else { Cow::Borrowed(heights) };
+        let rings = radial_spectrum(&under_window);
+        let measured = Self::of_measured(heights, side);
         Self {
             rms_height: moments.rms_height * side,
             rms_slope: moments.rms_slope,
@@ -178,7 +186,8 @@ impl SurfaceRecord {
             windowed,
             hurst_fit: fit_hurst(&rings).map(|fit| HurstRow::new(fit, side)),
             spectrum: rings.iter().map(|ring| SpectrumRow::new(ring, side)).collect(),
-            ..Self::of_measured(heights, side)
+            areal: measured.areal.clone().with_texture(heights, &under_window, side),
+            ..measured
         }
     }
 
@@ -209,6 +218,7 @@ impl SurfaceRecord {
             kurtosis: statistics.parameters.sku,
             distribution: statistics.distribution,
             parameters: statistics.parameters,
+            areal: ArealRow::of(heights, side, statistics.mean),
             border_step: None,
             windowed: false,
             hurst_fit: None,

@@ -2,7 +2,7 @@
 
 use rc_core::Histogram;
 use rc_core::quantity::{digits, engineering};
-use rc_heights::{AreaParameters, ChannelInfo};
+use rc_heights::ChannelInfo;
 use rc_solver::PressureStatistics;
 
 use super::record::{SpectrumRow, SurfaceRecord, TreatmentRow};
@@ -42,7 +42,7 @@ pub(crate) fn heights(s: &SurfaceRecord) -> String {
     let heading = "\n  height about mean   density\n";
     treatments(&s.treatments)
         + &aligned(&surface_lines(s))
-        + &area_parameters(&s.parameters)
+        + &area_parameters(s)
         + &spectrum_lines(s)
         + &spectrum_table(&s.spectrum)
         + heading
@@ -117,19 +117,21 @@ fn changed(row: &TreatmentRow) -> String {
 }
 
 /// Lines of the parameters of ISO 25178-2.
-fn area_parameters(p: &AreaParameters) -> String {
-    "\n  ISO 25178-2, from differences of neighbours, no filter\n".to_owned() + &aligned(&parameter_lines(p))
+fn area_parameters(s: &SurfaceRecord) -> String {
+    "\n  ISO 25178-2, from differences of neighbours, no filter\n".to_owned() + &aligned(&parameter_lines(s))
 }
 
 /// Names and values of the parameters of ISO 25178-2.
-pub(crate) fn parameter_lines(p: &AreaParameters) -> Vec<(&'static str, String)> {
-    let length = |value| engineering(value, "m");
-    vec![
+pub(crate) fn parameter_lines(s: &SurfaceRecord) -> Vec<(&'static str, String)> {
+    let (p, length) = (&s.parameters, |value| engineering(value, "m"));
+    let mut lines = vec![
         ("Sa, Sq", format!("{}, {}", length(p.sa), length(p.sq))),
         ("Ssk, Sku", format!("{}, {}", digits(p.ssk, 3), digits(p.sku, 4))),
         ("Sp, Sv, Sz", format!("{}, {}, {}", length(p.sp), length(p.sv), length(p.sz))),
         ("Sdq, Sdr", format!("{}, {} %", digits(p.sdq, 4), digits(100.0 * p.sdr, 4))),
-    ]
+    ];
+    lines.extend(s.areal.lines());
+    lines
 }
 
 /// Lines about the periodicity of the map and the power law in its spectrum.

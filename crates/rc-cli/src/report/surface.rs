@@ -83,7 +83,7 @@ pub(super) fn page(path: &Path, quiet: bool) -> Result<Page<SurfaceBody>, CliErr
             law: law(&record),
             distribution: record.distribution.bins().collect(),
             lines: surface_lines(&record),
-            parameters: parameter_lines(&record.parameters),
+            parameters: parameter_lines(&record),
         },
     })
 }

@@ -90,6 +90,7 @@ pub(crate) fn treat(read: MapRead, treatments: &[Treatment], budget: Budget) -> 
     let mut origin = origin::of(&path, keys.channel.as_deref());
     origin.treatments.extend(after.iter().map(|effect| effect.treatment.clone()));
     effects.extend(after);
+    let lay = doubts::mirrored(&map, treatments);
     let CellOfMap { cell, cell_y, .. } = CellOfMap::of(&path, &map, [None, None])?;
     // The scene of a folder has the grid of the map before its treatments.
     let as_read = effects[0].grid;
@@ -99,6 +100,7 @@ pub(crate) fn treat(read: MapRead, treatments: &[Treatment], budget: Budget) -> 
     let mut surface = setup.of_map(&path, map, expected)?;
     let mut warnings = despiked(warnings, treatments, &surface.warnings);
     warnings.extend(filled(treatments, &effects));
+    warnings.extend(lay);
     warnings.extend(doubts::of_record(&path));
     surface.origin = Some(origin);
     Ok(Prepared { surface, cell: setup.cell, effects, warnings, notes })
@@ -115,6 +117,7 @@ pub fn prepared(map: HeightMap, treatments: &[Treatment]) -> Result<(HeightMap, 
     effects.extend(after);
     let mut warnings = despiked(warnings, treatments, &doubts::of_map(&map));
     warnings.extend(filled(treatments, &effects));
+    warnings.extend(doubts::mirrored(&map, treatments));
     Ok((map, warnings))
 }
 

@@ -3,12 +3,14 @@
 use std::path::Path;
 
 use rc_core::quantity::{count, digits, engineering};
-use rc_core::{Field, PeriodicCell};
-use rc_fractal::height_and_slope_of_grid;
+use rc_core::{Field, Grid, PeriodicCell};
+use rc_fractal::{Texture, height_and_slope_of_grid};
 use rc_heights::suspicion::{Counter, Suspicions};
-use rc_heights::{BorderStep, HeightMap};
+use rc_heights::{BorderStep, HeightMap, Periodic, Treatment, hann};
 use rc_sweep::Warning;
-use rc_sweep::WarningCode::{Assumed, Border, Columns, Counter as CounterCode, Marks, Missing, Slope, Spikes, Units};
+use rc_sweep::WarningCode::{
+    Assumed, Border, Columns, Counter as CounterCode, Marks, Mirror, Missing, Slope, Spikes, Units,
+};
 
 use crate::files::beside;
 
@@ -157,15 +159,41 @@ pub(crate) fn filled(missing: usize, all: usize) -> Option<Warning> {
     (part > FEW_FILLED).then(|| Warning::new(Missing, text()))
 }
 
-/// The doubt about filled points in the record of a folder of `rc surface` or `rc solve`, when `path` is the map in it.
+/// The doubts about treatments in the record of a folder of `rc surface` or `rc solve`, when `path` is the map in it.
 ///
-/// The map itself does not show which points were filled.
-pub(crate) fn of_record(path: &Path) -> Option<Warning> {
+/// The map itself does not show which points were filled, or that it was mirrored.
+pub(crate) fn of_record(path: &Path) -> Vec<Warning> {
     #[derive(serde::Deserialize)]
     struct Record {
         warnings: Vec<Warning>,
     }
-    beside::records(path).find_map(|Record { warnings }| warnings.into_iter().find(|warning| warning.code == Missing))
+    let of_treatments = |warning: &Warning| matches!(warning.code, Missing | Mirror);
+    let first = beside::records(path).next();
+    first.map_or_else(Vec::new, |Record { warnings }| warnings.into_iter().filter(of_treatments).collect())
+}
+
+/// A doubt about a measured map with a lay, which is a quarter of `map` after its `treatments`.
+///
+/// With the lay, its mirror images make roofs and valleys across the borders, along which a flow may run or end.
+pub(crate) fn mirrored(map: &HeightMap, treatments: &[Treatment]) -> Option<Warning> {
+    let at = treatments.iter().position(|treatment| *treatment == Treatment::Periodic(Periodic::Mirror))?;
+    if treatments[at..].iter().any(|treatment| matches!(treatment, Treatment::Repeat(_))) {
+        return None;
+    }
+    let (heights, all) = (&map.heights, map.heights.grid());
+    let ratio = map.sides.map_or(all.cell_ratio(), |[x, y]| y / x);
+    let measured = Grid::in_cell(all.nx() / 2, all.ny() / 2, ratio).ok()?;
+    let values = (0..measured.ny()).flat_map(|iy| heights.row(iy)[..measured.nx()].iter().copied()).collect();
+    let measured = Field::new(measured, values).ok()?;
+    let texture = Texture::of(&measured, &hann(&measured));
+    let aspect = texture.aspect.filter(|_| texture.has_lay())?;
+    let text = format!(
+        "the map has a lay (Str {} {}), which its mirror images continue in other directions, so that flows and conductances \
+         across the borders are not those of the surface; a patch with --boundary free has no mirror images",
+        if aspect.is_bound { "below" } else { "=" },
+        digits(aspect.ratio, 2)
+    );
+    Some(Warning::new(Mirror, text))
 }
 
 /// A doubt about a map that is solved as if it repeated itself.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use rc_core::Field;
-use rc_heights::{AreaParameters, FormatError, HeightMap, ReadNote, Unit, read};
+use rc_heights::{AreaParameters, FormatError, HeightMap, MaterialRatio, ReadNote, Unit, read};
 
 pub(crate) fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/formats")
@@ -89,6 +89,21 @@ fn parameters_are_those_of_surfalize() {
     ];
     for (name, value, reference) in others {
         assert!((value / reference - 1.0).abs() < 1e-12, "{name}: {value}, surfalize {reference}");
+    }
+    let curve = MaterialRatio::of(&map.heights).expect("points");
+    let core = curve.core();
+    let others = [
+        ("Sk", core.sk, 2.018328718936544e-6, 1e-12),
+        ("Smr1", core.smr1, 0.09542330289555393, 1e-12),
+        ("Smr2", core.smr2, 0.9483467012585294, 1e-12),
+        // surfalize ends its integrals at the nearest of 10 000 heights.
+        ("Spk", core.spk, 0.390_780_12e-6, 5e-3),
+        ("Svk", core.svk, 0.293_228_91e-6, 5e-3),
+        ("Vm", curve.material_volume(0.1), 0.022_228_182e-6, 5e-3),
+        ("Vvv", curve.void_volume(0.8), 0.052_850_589e-6, 5e-3),
+    ];
+    for (name, value, reference, tolerance) in others {
+        assert!((value / reference - 1.0).abs() < tolerance, "{name}: {value}, surfalize {reference}");
     }
     // surfalize divides the surface into other triangles. At 8 points per wave the difference is a few percent.
     assert!((p.sdr / 0.03878553951034358 - 1.0).abs() < 0.05, "Sdr {}, surfalize 0.0388", p.sdr);
