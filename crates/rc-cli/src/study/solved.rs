@@ -127,10 +127,11 @@ pub(super) fn run(args: StudyArgs, stop: Option<&dyn Observer>) -> Result<Solved
     let how = HowRows { run: &run, threads: n_threads, max_elements: study.max_elements, stop };
     let ended = solved::rows(&study.rows, &sweep, how);
     let kept = sweep.kept();
-    if let (true, Err(error)) = (kept.rows().is_empty(), &ended) {
-        return Err(error.clone());
-    }
     let rows = kept.rows().clone();
+    if rows.is_empty() {
+        ended?.verdict(&rows, sweep.n_rows(), &run)?;
+        return Err(CliError::Interrupted("interrupted before the first row".to_owned()));
+    }
     let record = study.record(&rows);
     write(&folder, &record)?;
     Ok(SolvedStudy { record, rows, n_rows: sweep.n_rows(), n_threads, run, folder, ended })
