@@ -21,7 +21,7 @@ function rangeChart({ result, unit, points }) {
 function contactPictures(pictures) {
   if (pictures.length === 0) return [];
   const figure = ({ png, note }) => make("figure", {}, make("img", { src: `data:image/png;base64,${png}`, alt: `Contact, ${note}`, style: "width: 100%" }), make("figcaption", {}, note));
-  return [make("h2", {}, "Contact under the largest load"), make("div", { class: "columns wide" }, ...pictures.map(figure))];
+  return [make("h2", {}, "Contact under the largest load"), make("div", { class: "columns" }, ...pictures.map(figure))];
 }
 
 function studyPage(data) {

@@ -281,7 +281,8 @@ fn table(scenes: Vec<SceneCurves>, rows: &[Row]) -> Curves {
         ]);
         cells
     };
-    let mut heads = if several { vec!["scene"] } else { Vec::new() };
+    let name = if rows.iter().any(|row| row.label != row.scene) { "variation" } else { "scene" };
+    let mut heads = if several { vec![name] } else { Vec::new() };
     heads.extend(["seed", "mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness", "status"]);
     let flows = rows.iter().filter_map(|row| {
         let key = (row.scene.clone(), row.seed);

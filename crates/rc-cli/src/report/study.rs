@@ -12,7 +12,7 @@ use serde_json::Value;
 use super::page::{Command, Page, Text, Tile, made};
 use crate::study::pictures::path_in;
 use crate::study::ranges::{LoadRanges, Range};
-use crate::study::record::{StudyRecord, words};
+use crate::study::record::{StudyRecord, takes_prefix, words};
 
 /// Columns of the table of all rows: key, title and unit.
 const COLUMNS: [(&str, &str, &str); 6] = [
@@ -170,7 +170,12 @@ fn chart(record: &StudyRecord, of: &Range) -> RangeChart {
         })
     };
     let points = record.loads.iter().filter_map(point).collect();
-    RangeChart { result: of.result.replace('_', " "), unit: of.si_unit(), points }
+    let name = of.result.replace('_', " ");
+    // The script puts a prefix before a unit.
+    match of.si_unit() {
+        unit if takes_prefix(unit) => RangeChart { result: name, unit, points },
+        unit => RangeChart { result: format!("{name} ({unit})"), unit: "", points },
+    }
 }
 
 fn row(cells: &Cells) -> Vec<String> {

@@ -69,13 +69,17 @@ pub(super) fn lines(rows: &SweepRows) -> SweepRows {
     rows.iter().map(|(index, row)| (*index, line(row))).collect()
 }
 
+/// Whether a prefix before the unit means what it says. It would belong to the metre, and not to its power.
+pub(crate) fn takes_prefix(unit: &str) -> bool {
+    !["1/m", "m³"].contains(&unit)
+}
+
 /// `value` in the words of a table.
 pub(crate) fn words(value: f64, unit: &'static str) -> String {
     match unit {
         "" => digits(value, 4),
-        // A prefix would belong to the metre, and not to its power.
-        "1/m" | "m³" => format!("{} {unit}", digits(value, 4)),
-        _ => engineering(value, unit),
+        _ if takes_prefix(unit) => engineering(value, unit),
+        _ => format!("{} {unit}", digits(value, 4)),
     }
 }
 
