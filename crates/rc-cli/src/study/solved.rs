@@ -115,6 +115,10 @@ pub fn of_words(words: &[OsString], stop: &dyn Observer) -> Result<StudyOutcome,
 pub(super) fn run(args: StudyArgs, stop: Option<&dyn Observer>) -> Result<SolvedStudy, CliError> {
     check_loads(&args.scene.contact)?;
     let scene = resolve::layers(Some(&args.file), args.scene.clone())?;
+    if scene.surface.heights.is_none() {
+        let message = "has no height map; give a measured map, or heights.npy in a folder of rc surface";
+        return Err(CliError::in_file(&args.file, message));
+    }
     let run = scene.run.clone();
     resolve::check_size_and_material(&scene.surface, &scene.contact)?;
     let n_threads = threads::start(run.threads)?;

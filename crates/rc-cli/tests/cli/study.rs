@@ -125,6 +125,8 @@ fn what_does_not_go_together_is_left_out_or_refused() {
     assert_eq!(skipped[0]["treatment"], "free patch");
     assert_refused(&place.run(&study(&["--pressures", "1e5", "--pressure", "1e5", "--out", "t"])), "omit --pressure");
     assert_refused(&place.run(&["study", "scan.npy", "--cell", "1e-3", "--pressures", "1e5", "--out", "t"]), "e_star");
+    place.write("waves.toml", "waves = 8\ngrid = 64\n");
+    assert_refused(&place.run(&["study", "waves.toml", "--pressures", "1e5", "--out", "t"]), "has no height map");
     assert!(!place.path("t").exists());
 }
 
