@@ -11,6 +11,7 @@ All quantities are in SI units. A cell of 1 and an E* of 1 give dimensionless re
 
 :func:`solve` solves one problem and :func:`sweep` many. :class:`Surface` is a random surface, and :func:`surface`
 returns its heights. :func:`read` reads a measured map, :func:`prepare` treats it, and :func:`inspect` describes it.
+:func:`study` tells how much its treatment matters.
 :func:`load` reads a result folder.
 
 Bad input raises a ``ValueError`` with the message that the command line prints. Unknown keywords and some wrong types
@@ -26,6 +27,7 @@ from roughcontact._result import Result, load
 from roughcontact._rows import FieldsAt
 from roughcontact._run import Interrupted, NotConvergedError, NotConvergedWarning, Progress
 from roughcontact._solve import solve
+from roughcontact._study import Study, study
 from roughcontact._surface import Surface, surface
 from roughcontact._sweep import sweep
 from roughcontact._table import Table
@@ -44,6 +46,7 @@ __all__ = [
     "Progress",
     "Result",
     "StressDistribution",
+    "Study",
     "Surface",
     "Table",
     "__version__",
@@ -53,6 +56,7 @@ __all__ = [
     "prepare",
     "read",
     "solve",
+    "study",
     "surface",
     "sweep",
 ]

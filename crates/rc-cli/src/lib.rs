@@ -38,7 +38,7 @@ mod prepare;
 mod report;
 pub mod run;
 pub mod solve;
-mod study;
+pub mod study;
 pub mod surface;
 pub mod sweep;
 mod terminal;

@@ -18,6 +18,7 @@ mod running;
 mod scene;
 mod solve;
 mod solved;
+mod study;
 mod sweep;
 
 /// Runs the command `rc` with these arguments and returns its exit code.
@@ -41,6 +42,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(solve::solve, module)?)?;
     module.add_class::<sweep::Planned>()?;
     module.add_function(wrap_pyfunction!(sweep::plan_sweep, module)?)?;
+    module.add_function(wrap_pyfunction!(study::study, module)?)?;
     module.add_function(wrap_pyfunction!(arrays::points, module)?)?;
     module.add_function(wrap_pyfunction!(arrays::metres, module)?)?;
     module.add_function(wrap_pyfunction!(maps::channels, module)?)?;

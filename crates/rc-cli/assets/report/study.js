@@ -17,6 +17,13 @@ function rangeChart({ result, unit, points }) {
   return make("figure", {}, make("figcaption", {}, result), chart.element);
 }
 
+/** The contact under the largest load, for the treatments with the extreme areas. */
+function contactPictures(pictures) {
+  if (pictures.length === 0) return [];
+  const figure = ({ png, note }) => make("figure", {}, make("img", { src: `data:image/png;base64,${png}`, alt: `Contact, ${note}`, style: "width: 100%" }), make("figcaption", {}, note));
+  return [make("h2", {}, "Contact under the largest load"), make("div", { class: "columns" }, ...pictures.map(figure))];
+}
+
 function studyPage(data) {
   const loads = data.loads.flatMap(({ name, rows }) => [
     make("h3", {}, `mean pressure ${name}`),
@@ -25,6 +32,7 @@ function studyPage(data) {
   return [
     make("h2", {}, "Ranges"),
     ...loads,
+    ...contactPictures(data.pictures),
     make("div", { class: "columns wide" }, ...data.charts.map(rangeChart)),
     make("p", { class: "quiet" }, data.note),
     make("h2", {}, "Rows"),

@@ -69,6 +69,20 @@ impl Steps {
         self
     }
 
+    /// The flags that give these steps: ` --level quadratic --no-fill`.
+    pub(crate) fn flags(&self) -> String {
+        let Without { no_crop, no_despike, no_level, no_fill, no_periodic } = self.without;
+        let left_out = [
+            ("crop", no_crop),
+            ("despike", no_despike),
+            ("level", no_level),
+            ("fill", no_fill),
+            ("periodic", no_periodic),
+        ];
+        let left_out = left_out.iter().filter(|(_, given)| *given).map(|(name, _)| format!(" --no-{name}"));
+        self.treatment.flags() + &left_out.collect::<String>()
+    }
+
     /// The usual treatments, with those that are given instead of them or besides.
     pub(crate) fn keys(&self) -> TreatmentKeys {
         let (given, without) = (&self.treatment, self.without);

@@ -8,7 +8,7 @@ use clap::Args;
 #[derive(Args, Clone, Debug)]
 #[command(after_help = REPORT_HELP)]
 pub(crate) struct ReportArgs {
-    /// Folder of a result, a surface or a sweep (--out of rc solve, surface, sweep)
+    /// Folder of a result, a surface, a sweep or a study (--out of rc solve, surface, sweep, study)
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
     /// The page [default: report.html in DIR]
@@ -25,4 +25,5 @@ The page is one file, usually below 3 MB, which loads nothing: it can be sent by
 For a result it has maps of contact, pressure and gap, sections through the cursor, the stress distribution with a fit of Eq. 7, \
 contact spots, certificate, parameters, and the command that repeats it. For a sweep it has area-load and load-penetration curves \
 and the rows. For a mean (rc sweep --error-of-mean) it has the means with error bars, and variance and cost of each level. \
+For a study it has the range of each result, and the contacts with the least and the greatest area. \
 Fields of more than 512 x 512 elements are averaged to at most 512 x 512 pixels.";

@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 /// The flags of the keys: ` --key value`, or ` --key` for a key that is true.
-pub(super) fn flags(keys: &impl Serialize) -> String {
+pub(crate) fn flags(keys: &impl Serialize) -> String {
     let keys = serde_json::to_value(keys).unwrap_or(Value::Null);
     let keys = keys.as_object().cloned().unwrap_or_default();
     let flag = |(key, value): (&String, &Value)| match value {
@@ -24,7 +24,7 @@ fn word(value: &Value) -> Option<String> {
 }
 
 /// `text` as one word of a shell.
-pub(super) fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-/:=,+".contains(c);
     if !text.is_empty() && text.chars().all(plain) {
         text.to_owned()

@@ -5,19 +5,37 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::command::{flags, quoted};
-use super::page::{Command, Page, Text, Tile, WITHOUT_FILES, made};
-use super::percolation;
+use super::page::{Page, Text, Tile, made};
+use super::{percolation, sweep_command};
 use crate::error::CliError;
 use rc_core::quantity::{Scale, count, digits, engineering};
 use rc_sweep::{TABLE_FILE, WarningCode};
 
+/// Units of keys that may be varied.
+const UNITS: [(&str, &str); 12] = [
+    ("hardness", "Pa"),
+    ("e_star", "Pa"),
+    ("young", "Pa"),
+    ("young2", "Pa"),
+    ("force", "N"),
+    ("cell", "m"),
+    ("cell_y", "m"),
+    ("rms", "m"),
+    ("layer_thickness", "m"),
+    ("radius", "m"),
+    ("wavelength", "m"),
+    ("wave_amplitude", "m"),
+];
+
 /// The columns of `sweep.csv` that the page uses, in SI units.
 #[derive(Clone, Debug, Deserialize)]
 struct Row {
-    /// Name of the scene and of the variation.
+    /// Name of the scene, with the varied keys and their values.
     #[serde(default)]
     scene: String,
+    /// The same in the words of the page.
+    #[serde(skip)]
+    label: String,
     seed: Option<u64>,
     control_value: f64,
     control: String,
@@ -103,7 +121,7 @@ pub(super) fn page(folder: &Path, settings: Option<&Value>) -> Result<Page<Curve
         good,
         warnings: warnings(&rows),
         tiles: tiles(&rows),
-        commands: settings.map_or_else(Vec::new, commands),
+        commands: settings.map_or_else(Vec::new, sweep_command::commands),
         files,
         made: made(),
         kind: "sweep",
@@ -129,18 +147,32 @@ fn read(path: &Path) -> Result<Vec<Row>, CliError> {
     let row = |record: csv::StringRecord| -> Result<Row, csv::Error> {
         let row: Row = record.deserialize(Some(&heads))?;
         let varied = varied(&heads, &record);
-        let scene =
-            [row.scene].into_iter().chain(varied).filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
-        Ok(Row { scene, ..row })
+        let named = |words: fn(&str, &str) -> String| {
+            let parts = varied.iter().map(|(key, value)| words(key, value));
+            [row.scene.clone()].into_iter().chain(parts).filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+        };
+        let (scene, label) = (named(|key, value| format!("{key} {value}")), named(in_words));
+        Ok(Row { scene, label, ..row })
     };
     let rows: Vec<Row> = reader.records().map(|record| row(record?)).collect::<Result<_, _>>().map_err(fail)?;
     if rows.is_empty() { Err(CliError::in_file(path, "has no rows")) } else { Ok(rows) }
 }
 
-/// The varied keys of a row with their values, such as `hardness 5000000.0`. They are between load and status.
-fn varied(heads: &csv::StringRecord, record: &csv::StringRecord) -> Vec<String> {
+/// The varied keys of a row with their values. They are between load and status.
+fn varied<'a>(heads: &'a csv::StringRecord, record: &'a csv::StringRecord) -> Vec<(&'a str, &'a str)> {
     let cells = heads.iter().zip(record).skip_while(|(head, _)| *head != "control_value").skip(1);
-    cells.take_while(|(head, _)| *head != "status").map(|(head, cell)| format!("{head} {cell}")).collect()
+    cells.take_while(|(head, _)| *head != "status").collect()
+}
+
+/// A varied key with its value, such as `hardness = 5 MPa`.
+fn in_words(key: &str, value: &str) -> String {
+    let unit = UNITS.iter().find(|(name, _)| *name == key).map(|(_, unit)| *unit);
+    let value = match (value.parse::<f64>(), unit) {
+        (Ok(number), Some(unit)) => engineering(number, unit),
+        (Ok(number), None) => number.to_string(),
+        (Err(_), _) => value.to_owned(),
+    };
+    format!("{} = {value}", key.replace('_', " "))
 }
 
 /// A sentence about the rows, and whether all planned rows exist and converged.
@@ -178,7 +210,7 @@ impl SceneCurves {
         // A mean over a part of the seeds would jump where the curve of a seed ends.
         let of_all = loads.into_iter().map(at).filter(|points| points.len() == seeds.len());
         let mean = of_all.map(|points| Point::mean(&points)).collect();
-        Self { name: rows.first().map(|row| row.scene.clone()).unwrap_or_default(), seeds, mean }
+        Self { name: rows.first().map(|row| row.label.clone()).unwrap_or_default(), seeds, mean }
     }
 }
 
@@ -237,7 +269,7 @@ fn tiles(rows: &[Row]) -> Vec<Tile> {
 fn table(scenes: Vec<SceneCurves>, rows: &[Row]) -> Curves {
     let several = scenes.len() > 1;
     let cells = |row: &Row| {
-        let mut cells = if several { vec![row.scene.clone()] } else { Vec::new() };
+        let mut cells = if several { vec![row.label.clone()] } else { Vec::new() };
         cells.extend([
             row.seed.map_or_else(|| "–".to_owned(), |seed| seed.to_string()),
             engineering(row.mean_pressure, "Pa"),
@@ -249,7 +281,8 @@ fn table(scenes: Vec<SceneCurves>, rows: &[Row]) -> Curves {
         ]);
         cells
     };
-    let mut heads = if several { vec!["scene"] } else { Vec::new() };
+    let name = if rows.iter().any(|row| row.label != row.scene) { "variation" } else { "scene" };
+    let mut heads = if several { vec![name] } else { Vec::new() };
     heads.extend(["seed", "mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness", "status"]);
     let flows = rows.iter().filter_map(|row| {
         let key = (row.scene.clone(), row.seed);
@@ -265,45 +298,6 @@ fn table(scenes: Vec<SceneCurves>, rows: &[Row]) -> Curves {
     }
 }
 
-/// The command lines of the sweep, one for each scene.
-///
-/// `settings` is the first line of its journal.
-fn commands(settings: &Value) -> Vec<Command> {
-    let surfaces = settings["surfaces"].as_array().map_or(&[][..], Vec::as_slice);
-    let scenes = surfaces.chunk_by(|a, b| a["scene"] == b["scene"]);
-    let command = |scene: &[Value]| {
-        let list = |values: Vec<String>| values.join(",");
-        let mut surface = scene[0]["surface"].clone();
-        if let Some(keys) = surface.as_object_mut() {
-            keys.remove("seed");
-        }
-        let seeds = scene.iter().filter(|one| !one["surface"]["seed"].is_null());
-        let seeds = list(seeds.map(|one| one["surface"]["seed"].to_string()).collect());
-        let seeds = if seeds.is_empty() { String::new() } else { format!(" --seeds {seeds}") };
-        let loads = list(scene[0]["loads"].as_array().into_iter().flatten().map(Value::to_string).collect());
-        let control = settings["control"].as_str().unwrap_or("pressure");
-        let fields = if settings["fields"] == true { " --fields" } else { "" };
-        let name = scene[0]["scene"].as_str().unwrap_or_default();
-        let contact = flags(&scene[0]["contact"]);
-        let text = format!(
-            "rc sweep{}{contact} --{control}s {loads}{seeds}{fields} --out {}",
-            flags(&surface),
-            quoted(&format!("again{}{name}", if name.is_empty() { "" } else { "-" }))
-        );
-        let kinds = [
-            ("heights", "the height map "),
-            ("spectrum", "the file of waves "),
-            ("psd", "the table of a spectrum "),
-            ("like", ""),
-        ];
-        let mut files = kinds.iter().filter_map(|(key, kind)| surface[*key].as_str().map(|file| (kind, file)));
-        let note =
-            files.next().map_or(WITHOUT_FILES.to_owned(), |(kind, file)| format!("In the folder of {kind}{file}:"));
-        Command { note, text }
-    };
-    scenes.map(command).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -312,6 +306,7 @@ mod tests {
     fn means_are_over_seeds_under_equal_loads() {
         let row = |seed, load: f64, area| Row {
             scene: String::new(),
+            label: String::new(),
             seed: Some(seed),
             control_value: load,
             control: "pressure".to_owned(),

@@ -2,8 +2,7 @@
 //!
 //! The page needs no network. It is a frame ([`document`]), a script, and data. [`contact`] makes the data of a solve,
 //! [`surface`] those of a surface, [`curves`] those of a sweep, [`mean`] those of a mean over realisations, and [`study`]
-//! those of a study. All
-//! texts are made here, and the script shows them as text. The script draws maps and charts from numbers.
+//! those of a study. All texts are made here, and the script shows them as text. The script draws maps and charts from numbers.
 
 pub(crate) mod args;
 
@@ -20,8 +19,11 @@ mod percolation;
 mod spot_sizes;
 mod study;
 mod surface;
+mod sweep_command;
 
 use std::path::Path;
+
+pub(crate) use self::command::{flags, quoted};
 
 use self::args::ReportArgs;
 use crate::error::CliError;
@@ -35,9 +37,9 @@ use rc_sweep::{TABLE_FILE, files, settings_in};
 /// Name of the page in a folder.
 pub(crate) const PAGE_FILE: &str = "report.html";
 
-/// The page of a study.
-pub(crate) fn of_study(record: &StudyRecord) -> String {
-    document::html(&study::page(record))
+/// The page of the study in `folder`.
+pub(crate) fn of_study(folder: &Path, record: &StudyRecord) -> String {
+    document::html(&study::page(folder, record))
 }
 
 /// The page of what is in `folder`.
@@ -48,6 +50,9 @@ fn html(folder: &Path, quiet: bool) -> Result<String, CliError> {
     if !folder.is_dir() {
         return Err(CliError::in_file(folder, no_folder(folder, "a solve or a sweep")));
     }
+    if let Some(record) = StudyRecord::read(folder)? {
+        return Ok(of_study(folder, &record));
+    }
     let settings = settings_in(folder);
     if !folder.join(TABLE_FILE).is_file() {
         return match settings {
@@ -56,7 +61,9 @@ fn html(folder: &Path, quiet: bool) -> Result<String, CliError> {
                 format_args!("this sweep has no {TABLE_FILE} yet; finish it with --resume"),
             )),
             None if folder.join(SUMMARY_FILE).exists() => Ok(document::html(&contact::page(folder)?)),
-            None => Err(CliError::in_file(folder, "not a result; give the --out folder of a solve or a sweep")),
+            None => {
+                Err(CliError::in_file(folder, "not a result; give the --out folder of a solve, a sweep or a study"))
+            }
         };
     }
     match settings.as_ref() {

@@ -21,8 +21,8 @@ pub(crate) struct StudyArgs {
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
     /// Mean pressures (Pa): 1e4,1e5,1e6, or 1e4:1e6:3 (geometric)
-    #[arg(long, value_name = "LIST", required = true, value_parser = pressures, allow_hyphen_values = true)]
-    pub(crate) pressures: Loads,
+    #[arg(long, value_name = "LIST", required_unless_present = "force", value_parser = pressures, allow_hyphen_values = true)]
+    pub(crate) pressures: Option<Loads>,
     /// Continue the study in --out, or start it
     #[arg(long)]
     pub(crate) resume: bool,
@@ -57,7 +57,10 @@ fn without_loads(arg: Arg) -> Arg {
 const STUDY_HELP: &str = "\
 The map is prepared as rc prepare does it, and solved at each pressure. Then one step at a time is changed: fill, level, crop, \
 border, low-pass, despike, a patch with free borders, and every second point. treatment_low and treatment_high are the least and \
-the greatest result of all these rows; of a patch, penetration, stiffness and conductance do not count.
+the greatest result of all these rows; of a patch, penetration, stiffness and conductance do not count. Treatments that give the \
+same map are solved once.
 
-DIR receives study.csv (a line for each treatment and pressure), study.json (the ranges too), \
-the page report.html, and sweep/, the rows for --resume.";
+  rc study scan.x3p --pressures 1MPa,3MPa,10MPa --e-star 1e9 --out study
+
+DIR receives study.csv (a line for each treatment and pressure), study.json (the ranges too), the page report.html, which \
+rc report DIR draws again, contact/ (pictures of the contact at the largest pressure), and sweep/, the rows for --resume.";

@@ -1,7 +1,7 @@
 //! The range of each result over the treatments, beside the error of the mesh.
 
 use rc_sweep::{Cells, SweepRows};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::rows::TREATMENT;
@@ -24,11 +24,12 @@ const RESULTS: [(&str, &str, Option<&str>); 10] = [
 ];
 
 /// A result at one load, in SI units.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Range {
     /// Key of the result.
-    pub(crate) result: &'static str,
-    pub(crate) unit: &'static str,
+    pub(crate) result: String,
+    /// Its SI unit; empty for a number.
+    pub(crate) unit: String,
     /// The result of the unchanged treatments.
     pub(crate) value: f64,
     /// Estimated error of the mesh of `value`; `None` if there is no estimate.
@@ -43,8 +44,15 @@ pub(crate) struct Range {
     pub(crate) high_by: String,
 }
 
+impl Range {
+    /// The unit of the result, also of one that was read from a file.
+    pub(crate) fn si_unit(&self) -> &'static str {
+        RESULTS.iter().find(|(key, ..)| *key == self.result).map_or("", |(_, unit, _)| unit)
+    }
+}
+
 /// The results at one load.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LoadRanges {
     /// Mean pressure (Pa).
     pub(crate) pressure: f64,
@@ -93,6 +101,7 @@ fn range(
     // The first of equal ones, as for the least.
     let (high, high_by) = values.iter().rev().max_by(|a, b| a.0.total_cmp(&b.0))?.clone();
     let mesh_error = error.and_then(|key| number(base, key));
+    let (result, unit) = (result.to_owned(), unit.to_owned());
     Some(Range { result, unit, value, mesh_error, treatment_low: low, low_by, treatment_high: high, high_by })
 }
 
@@ -118,8 +127,8 @@ mod tests {
         let ranges = of_rows(&rows, &[1.0, 2.0], &[true, false, true]);
         let found: Vec<_> = ranges.iter().map(|load| (load.n_treatments, load.results.clone())).collect();
         let expected = |value, low, low_by: &str, high, high_by: &str| Range {
-            result: "area_fraction",
-            unit: "",
+            result: "area_fraction".to_owned(),
+            unit: String::new(),
             value,
             mesh_error: Some(0.01),
             treatment_low: low,

@@ -1,17 +1,25 @@
 //! The results of a study: `study.json`, `study.csv`, and the text on the terminal.
 
+use std::path::Path;
+
 use rc_core::quantity::{count, digits, engineering};
 use rc_heights::Treatment;
 use rc_sweep::{Cells, MapOrigin, SweepRows};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::ranges::{LoadRanges, Range};
-use super::rows::{STEP, TREATMENT};
+use super::rows::{SAME_AS, STEP, TREATMENT};
 use super::variants::Variant;
+use crate::error::CliError;
+
+/// File of the record in the folder of a study.
+pub(crate) const STUDY_FILE: &str = "study.json";
 
 /// A study with all its rows.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct StudyRecord {
+    /// The command that repeats the study.
+    pub(crate) command: String,
     /// The file of the map.
     pub(crate) source: MapOrigin,
     /// The treatments, the unchanged ones first.
@@ -25,43 +33,73 @@ pub(crate) struct StudyRecord {
 }
 
 /// A treatment of the study.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct TreatmentOf {
-    step: &'static str,
-    treatment: String,
+    step: String,
+    pub(crate) treatment: String,
     steps: Vec<String>,
+    /// An earlier treatment that gives the same map, so that its results are those of this one.
+    pub(crate) same_as: Option<String>,
 }
 
 /// A treatment without rows.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Skipped {
     pub(crate) treatment: String,
     pub(crate) reason: String,
 }
 
-impl From<&Variant> for TreatmentOf {
-    fn from(variant: &Variant) -> Self {
+impl TreatmentOf {
+    /// The treatment of `variant`, which has the same map as `same_as`.
+    pub(super) fn new(variant: &Variant, same_as: Option<&str>) -> Self {
         let steps = variant.treatments.iter().map(Treatment::to_string).collect();
-        Self { step: variant.step, treatment: variant.name.clone(), steps }
+        let (step, treatment) = (variant.step.to_owned(), variant.name.clone());
+        Self { step, treatment, steps, same_as: same_as.map(Into::into) }
     }
 }
 
 /// The rows with their treatment first, and without a seed.
 pub(super) fn lines(rows: &SweepRows) -> SweepRows {
+    const FIRST: [&str; 3] = [STEP, TREATMENT, SAME_AS];
     let line = |row: &Cells| {
-        let first = [STEP, TREATMENT].map(|key| (key.to_owned(), row.get(key).cloned().unwrap_or_default()));
-        let others = row.iter().filter(|(key, _)| ![STEP, TREATMENT, "seed"].contains(&key.as_str()));
+        let first = FIRST.map(|key| (key.to_owned(), row.get(key).cloned().unwrap_or_default()));
+        let others = row.iter().filter(|(key, _)| !FIRST.contains(&key.as_str()) && key.as_str() != "seed");
         first.into_iter().chain(others.map(|(key, value)| (key.clone(), value.clone()))).collect()
     };
     rows.iter().map(|(index, row)| (*index, line(row))).collect()
 }
 
+/// Whether a prefix before the unit means what it says. It would belong to the metre, and not to its power.
+pub(crate) fn takes_prefix(unit: &str) -> bool {
+    !["1/m", "m³"].contains(&unit)
+}
+
 /// `value` in the words of a table.
 pub(crate) fn words(value: f64, unit: &'static str) -> String {
-    if unit.is_empty() { digits(value, 4) } else { engineering(value, unit) }
+    match unit {
+        "" => digits(value, 4),
+        _ if takes_prefix(unit) => engineering(value, unit),
+        _ => format!("{} {unit}", digits(value, 4)),
+    }
 }
 
 impl StudyRecord {
+    /// The record in `folder`; `None` if there is none.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when the file is no record of a study.
+    pub(crate) fn read(folder: &Path) -> Result<Option<Self>, CliError> {
+        let path = folder.join(STUDY_FILE);
+        let Ok(text) = std::fs::read_to_string(&path) else { return Ok(None) };
+        let record = serde_json::from_str(&text);
+        record.map(Some).map_err(|cause| {
+            CliError::in_file(
+                &path,
+                format_args!("not a record of this version of rc study: {cause}; give rc study --resume"),
+            )
+        })
+    }
+
     /// A table for each load.
     pub(super) fn text(&self) -> String {
         let titles = ["as prepared", "mesh bar", "treatment_low", "treatment_high"];
@@ -73,12 +111,16 @@ impl StudyRecord {
         };
         let text: String = self.loads.iter().map(table).collect();
         let skipped = self.skipped.iter().map(|one| format!("  left out: {} ({})\n", one.treatment, one.reason));
-        text + &skipped.collect::<String>()
+        let same = self.treatments.iter().filter_map(|one| {
+            let other = one.same_as.as_ref()?;
+            Some(format!("  solved once: '{}' gives the map of '{other}'\n", one.treatment))
+        });
+        text + &skipped.chain(same).collect::<String>()
     }
 }
 
 fn line(range: &Range) -> String {
-    let of = |value| words(value, range.unit);
+    let of = |value| words(value, range.si_unit());
     let bar = range.mesh_error.map_or_else(|| "-".to_owned(), of);
     let by = format!("{} to {}", range.low_by, range.high_by);
     let (low, high) = (of(range.treatment_low), of(range.treatment_high));

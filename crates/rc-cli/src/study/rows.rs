@@ -1,12 +1,15 @@
 //! The rows of a study: its treated maps and its contacts.
 
+use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use rc_core::PeriodicCell;
+use rc_solver::Solution;
 use rc_sweep::memory::Budget;
 use rc_sweep::{ControlKind, FileMark, PlannedSurface, SweepPlan, SweepRow};
 use serde_json::json;
 
+use super::pictures;
 use super::variants::Variant;
 use crate::error::CliError;
 use crate::scene::keys::ContactKeys;
@@ -19,6 +22,9 @@ use crate::sweep::problems::RowScenes;
 pub(super) const STEP: &str = "step";
 pub(super) const TREATMENT: &str = "treatment";
 
+/// The column with the treatment that has the same map, and whose results these are.
+pub(super) const SAME_AS: &str = "same_as";
+
 /// Maps and contacts of a study. A map is treated when its first row is due.
 pub(super) struct StudyRows {
     read: MapRead,
@@ -26,6 +32,15 @@ pub(super) struct StudyRows {
     contact: ContactKeys,
     budget: Budget,
     slots: Vec<Mutex<Slot>>,
+    pictures: Pictures,
+}
+
+/// Where pictures of the contact are kept, and under which load.
+pub(super) struct Pictures {
+    /// The folder of the study.
+    pub(super) folder: PathBuf,
+    /// Mean pressure (Pa).
+    pub(super) pressure: f64,
 }
 
 /// What is known of a variant.
@@ -38,9 +53,15 @@ struct Slot {
 
 impl StudyRows {
     /// `contact` has no load.
-    pub(super) fn new(read: MapRead, variants: Vec<Variant>, contact: ContactKeys, budget: Budget) -> Self {
+    pub(super) fn new(
+        read: MapRead,
+        variants: Vec<Variant>,
+        contact: ContactKeys,
+        budget: Budget,
+        pictures: Pictures,
+    ) -> Self {
         let slots = variants.iter().map(|_| Mutex::default()).collect();
-        Self { read, variants, contact, budget, slots }
+        Self { read, variants, contact, budget, slots, pictures }
     }
 
     /// The plan of the study. The map is known by the content of its file.
@@ -74,6 +95,12 @@ impl StudyRows {
             *slot = self.treat(number)?;
         }
         Ok(use_slot(&mut slot))
+    }
+
+    /// The cell of the variant with number `number`.
+    fn cell(&self, number: usize) -> Result<PeriodicCell, CliError> {
+        let cell = self.slot(number, |slot| slot.cell)?;
+        cell.ok_or_else(|| CliError::input("the map has no cell"))
     }
 
     fn treat(&self, number: usize) -> Result<Slot, CliError> {
@@ -111,8 +138,16 @@ impl RowScenes<SweepRow> for StudyRows {
     }
 
     fn contact(&self, row: &SweepRow) -> Result<ContactSetup, CliError> {
-        let cell = self.slot(row.surface, |slot| slot.cell)?;
-        let cell = cell.ok_or_else(|| CliError::input("the map has no cell"))?;
-        Self::contact_in(&self.contact, &self.variants[row.surface], row.load, cell)
+        Self::contact_in(&self.contact, &self.variants[row.surface], row.load, self.cell(row.surface)?)
+    }
+
+    fn see(&self, row: &SweepRow, solution: &Solution<'_>) -> Result<(), CliError> {
+        let Pictures { folder, pressure } = &self.pictures;
+        if row.load.total_cmp(pressure).is_ne() {
+            return Ok(());
+        }
+        let name = &self.variants[row.surface].name;
+        let side = self.cell(row.surface)?.side();
+        pictures::write(&pictures::path_in(folder, name), name, (row.load, side), solution)
     }
 }

@@ -51,7 +51,10 @@ impl Base<'_> {
             let keys = TreatmentKeys { level: Some(form), ..self.keys.clone() };
             all.push(self.with("level", &format!("level {form}"), &keys)?);
         }
-        all.push(self.inserted("crop", &format!("middle {CROP} of each side"), self.smaller(), after_crops)?);
+        // A part of a periodic map is not periodic.
+        if self.keys.periodic != Some(PeriodicName::AsIs) {
+            all.push(self.inserted("crop", &format!("middle {CROP} of each side"), self.smaller(), after_crops)?);
+        }
         all.extend(self.borders()?);
         all.extend(self.low_passes()?);
         for sigma in DESPIKE.into_iter().filter(|sigma| self.keys.despike != Some(*sigma)) {

@@ -11,6 +11,9 @@ use crate::scene::values::GridSpec;
 /// Robust deviations of a spike, if none are given.
 pub(crate) const DESPIKE: f64 = 8.0;
 
+/// Fraction of a side that a window fades at each end, if none is given.
+const TAPER: f64 = 0.1;
+
 /// What is done to a height map before it is written.
 #[derive(Args, Clone, Debug, Default, PartialEq)]
 #[command(next_help_heading = "Treatment of a height map, in this order")]
@@ -46,7 +49,7 @@ pub(crate) struct TreatmentKeys {
     #[arg(long, value_name = "HOW", hide_possible_values = true)]
     pub(crate) periodic: Option<PeriodicName>,
     /// Fraction of a side that --periodic window fades, at each of its ends
-    #[arg(long, value_name = "PART", default_value_t = 0.1, allow_hyphen_values = true)]
+    #[arg(long, value_name = "PART", default_value_t = TAPER, allow_hyphen_values = true)]
     pub(crate) taper: f64,
     /// Gaussian filter (ISO 16610-61) that halves waves of this length (m)
     ///
@@ -88,6 +91,32 @@ pub fn treatments(words: &[String]) -> Result<Vec<Treatment>, CliError> {
 }
 
 impl TreatmentKeys {
+    /// The flags that give these keys: ` --crop square --level plane`.
+    pub(crate) fn flags(&self) -> String {
+        let flips = self.flip.iter().map(ToString::to_string).collect::<Vec<_>>().join(",");
+        let periodic = self.periodic.and_then(|name| Some(name.to_possible_value()?.get_name().to_owned()));
+        let length = |value: Option<f64>| value.map(|value| format!("{value:e}"));
+        let given = [
+            ("crop", self.crop.map(|crop| crop.to_string())),
+            ("flip", (!flips.is_empty()).then_some(flips)),
+            ("despike", self.despike.map(|sigma| sigma.to_string())),
+            ("level", self.level.map(|form| form.to_string())),
+            ("fill", self.fill.map(|how| how.to_string())),
+            ("high-pass", length(self.high_pass)),
+            ("periodic", periodic),
+            ("taper", self.tapers().then(|| self.taper.to_string())),
+            ("low-pass", length(self.low_pass)),
+            ("resample", self.resample.map(|grid| grid.to_string())),
+            ("repeat", self.repeat.map(|copies| copies.to_string())),
+        ];
+        given.into_iter().filter_map(|(name, value)| Some(format!(" --{name} {}", value?))).collect()
+    }
+
+    /// Whether the width of the window is not the default.
+    fn tapers(&self) -> bool {
+        self.taper.total_cmp(&TAPER).is_ne()
+    }
+
     /// The treatments in the order of their application.
     ///
     /// # Errors

@@ -43,7 +43,7 @@ impl Doubts {
     }
 
     /// One warning for each code.
-    fn warnings(&self) -> Vec<Warning> {
+    pub(super) fn warnings(&self) -> Vec<Warning> {
         let codes = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let told = |(code, doubt): (&WarningCode, &Doubt)| {
             let rows = if doubt.n_rows > 1 { format!(" ({})", count(doubt.n_rows, "row")) } else { String::new() };

@@ -69,7 +69,7 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
     let (started, threads) = (Instant::now(), surfaces.threads);
     let n_rows = sweep.n_rows();
     let n_before = n_rows - sweep.todo().len();
-    let how = HowRows { run: &surfaces.run, threads, max_elements: surfaces.max_elements() };
+    let how = HowRows { run: &surfaces.run, threads, max_elements: surfaces.max_elements(), stop: None };
     let solved = solved::rows(surfaces, sweep, how)?;
     let kept = sweep.kept();
     match (surfaces.run.json, surfaces.run.quiet) {
@@ -143,8 +143,8 @@ mod tests {
         let sweep = Sweep::start(plan, Shard::WHOLE, &out, false).expect("a sweep");
         let doubts = Doubts::default();
         let results = Results::new(1, &doubts, None, RowBar::new(0, 2, true));
-        let results = SweepResults { sweep: &sweep, results };
         let scenes = FirstRowHasOneIteration(&surfaces);
+        let results = SweepResults { sweep: &sweep, scenes: &scenes, results };
         let problems = SceneProblems::new(&scenes, Budget::UNLIMITED);
         let refused = sweep.solve(&problems, &results, Workers { threads: 1, at_once: 1 });
         assert!(matches!(refused, Err(RunError::Refused { kept: 1, .. })), "{refused:?}");

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use rc_core::Kernel;
-use rc_solver::{Plan, SolveError};
+use rc_solver::{Plan, Solution, SolveError};
 use rc_sweep::memory::Budget;
 use rc_sweep::{Row, RowProblem, RowProblems, SolvedRow};
 
@@ -27,6 +27,14 @@ pub(crate) trait RowScenes<R>: Sync {
     /// # Errors
     /// [`CliError::Input`] for keys of the contact.
     fn contact(&self, row: &R) -> Result<ContactSetup, CliError>;
+
+    /// Sees the solution of `row` before the row is kept.
+    ///
+    /// # Errors
+    /// [`CliError::Write`].
+    fn see(&self, _row: &R, _solution: &Solution<'_>) -> Result<(), CliError> {
+        Ok(())
+    }
 }
 
 /// The problems of the rows of `scenes`.

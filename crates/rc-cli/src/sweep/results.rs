@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use rc_core::Observer;
 use rc_sweep::{Cells, LeakageSummary, RowError, SolvedRow, replace_fields};
 
 use super::bar::RowBar;
@@ -19,13 +20,20 @@ pub(super) struct Results<'a> {
     threads: usize,
     doubts: &'a Doubts,
     limit: Stop,
+    /// Says when to stop, besides the limit.
+    stop: Option<&'a dyn Observer>,
     bar: RowBar,
 }
 
 impl<'a> Results<'a> {
     /// Results with the number `threads` of all threads. Their time limit begins now.
     pub(super) fn new(threads: usize, doubts: &'a Doubts, limit: Option<TimeLimit>, bar: RowBar) -> Self {
-        Self { threads, doubts, limit: Stop::at(Instant::now(), limit), bar }
+        Self { threads, doubts, limit: Stop::at(Instant::now(), limit), stop: None, bar }
+    }
+
+    /// These results until `stop` says so.
+    pub(super) fn until(self, stop: Option<&'a dyn Observer>) -> Self {
+        Self { stop, ..self }
     }
 
     /// The cells of row `number`. With `folder`, its fields are in this folder when this returns.
@@ -54,7 +62,7 @@ impl<'a> Results<'a> {
     }
 
     pub(super) fn should_stop(&self) -> bool {
-        self.limit.reason().is_some()
+        self.limit.reason().is_some() || self.stop.is_some_and(Observer::should_stop)
     }
 }
 

@@ -20,12 +20,13 @@ impl RowScenes<SweepRow> for Surfaces {
 }
 
 /// The results of the rows of a sweep.
-pub(super) struct SweepResults<'a> {
+pub(super) struct SweepResults<'a, S> {
     pub(super) sweep: &'a Sweep,
+    pub(super) scenes: &'a S,
     pub(super) results: Results<'a>,
 }
 
-impl<S: RowScenes<SweepRow>> RowResults<SceneProblems<'_, S>> for SweepResults<'_> {
+impl<S: RowScenes<SweepRow>> RowResults<SceneProblems<'_, S>> for SweepResults<'_, S> {
     fn cells(
         &self,
         row: &SweepRow,
@@ -33,6 +34,7 @@ impl<S: RowScenes<SweepRow>> RowResults<SceneProblems<'_, S>> for SweepResults<'
         contact: &SceneContact,
         solved: SolvedRow,
     ) -> Result<Cells, CliError> {
+        self.scenes.see(row, &solved.solution)?;
         let folder = self.sweep.fields_folder(row.index);
         self.results.cells(row.index, (surface, contact), solved, folder.as_deref())
     }

@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use rc_core::Observer;
 use rc_sweep::memory::Budget;
-use rc_sweep::{Sweep, SweepRow, SweepRows, Workers};
+use rc_sweep::{Sweep, SweepRow, SweepRows, Warning, Workers};
 
 use super::bar::RowBar;
 use super::doubts::Doubts;
@@ -23,6 +24,8 @@ pub(crate) struct HowRows<'a> {
     pub(crate) threads: usize,
     /// Number of elements of the largest row.
     pub(crate) max_elements: f64,
+    /// Says when no further row is begun, in a program that sees to interrupts itself.
+    pub(crate) stop: Option<&'a dyn Observer>,
 }
 
 /// What solving the rows left, besides the rows.
@@ -39,15 +42,18 @@ pub(crate) struct SolvedRows {
 pub(crate) fn rows<S: RowScenes<SweepRow>>(
     scenes: &S,
     sweep: &Arc<Sweep>,
-    HowRows { run, threads, max_elements }: HowRows<'_>,
+    HowRows { run, threads, max_elements, stop }: HowRows<'_>,
 ) -> Result<SolvedRows, CliError> {
     let n_rows = sweep.n_rows();
     let bar = RowBar::new(n_rows - sweep.todo().len(), n_rows, run.quiet);
-    let handled = (Arc::clone(sweep), bar.clone());
-    interrupt::install(move || interrupt::end(&handled.0.kept(), Some(n_rows), &handled.1));
+    if stop.is_none() {
+        let handled = (Arc::clone(sweep), bar.clone());
+        interrupt::install(move || interrupt::end(&handled.0.kept(), Some(n_rows), &handled.1));
+    }
     let doubts = Doubts::default();
     let budget = Budget::new(run.memory_limit);
-    let results = SweepResults { sweep, results: Results::new(threads, &doubts, run.time_limit, bar.clone()) };
+    let results = Results::new(threads, &doubts, run.time_limit, bar.clone()).until(stop);
+    let results = SweepResults { sweep, scenes, results };
     let workers = Workers { threads, at_once: budget.solves_at_once(max_elements) };
     let finished = sweep.solve(&SceneProblems::new(scenes, budget), &results, workers);
     bar.clear();
@@ -56,6 +62,11 @@ pub(crate) fn rows<S: RowScenes<SweepRow>>(
 }
 
 impl SolvedRows {
+    /// The warnings of the solved rows, one for each code.
+    pub(crate) fn warnings(&self) -> Vec<Warning> {
+        self.doubts.warnings()
+    }
+
     /// Tells the warnings of the `rows`, and fails where some of `n_rows` are missing or did not converge.
     ///
     /// # Errors

@@ -147,7 +147,7 @@ fn what_is_no_result_has_no_page() {
     let place = Place::new();
     assert_refused(&place.run(&["report", "nothing"]), "nothing");
     std::fs::create_dir(place.path("empty")).expect("a folder");
-    assert_refused(&place.run(&["report", "empty"]), "give the --out folder of a solve or a sweep");
+    assert_refused(&place.run(&["report", "empty"]), "give the --out folder of a solve, a sweep or a study");
     std::fs::create_dir(place.path("s")).expect("a folder");
     place.write("s/sweep.csv", "seed,control_value\n1,2\n");
     assert_refused(&place.run(&["report", "s"]), "sweep.csv");

@@ -63,13 +63,13 @@ fn each_result_has_the_range_of_all_treatments() {
             (Some("area_fraction"), &rows[i]["area_fraction_error"])
         );
     }
-    assert_eq!(place.names("s"), ["report.html", "study.csv", "study.json", "sweep"]);
+    assert_eq!(place.names("s"), ["contact", "report.html", "study.csv", "study.json", "sweep"]);
     let page = String::from_utf8(place.bytes("s/report.html")).expect("text");
     assert!(page.contains("\"kind\":\"study\"") && page.contains("every second point"), "no study in the page");
     let loads = ["<link", "src=\"", "@import"].into_iter().find(|word| page.contains(word));
     assert_eq!(loads, None, "the page loads something");
     let table = String::from_utf8(place.bytes("s/study.csv")).expect("text");
-    assert!(table.starts_with("step,treatment,control_value,status,"), "{table}");
+    assert!(table.starts_with("step,treatment,same_as,control_value,status,"), "{table}");
     assert_eq!(table.lines().count(), 25);
     let of = |name: &str| rows.iter().find(|row| row["treatment"] == name).expect(name);
     // 80 x 64 elements after mirroring, half as many along each side with every second point.
@@ -125,5 +125,62 @@ fn what_does_not_go_together_is_left_out_or_refused() {
     assert_eq!(skipped[0]["treatment"], "free patch");
     assert_refused(&place.run(&study(&["--pressures", "1e5", "--pressure", "1e5", "--out", "t"])), "omit --pressure");
     assert_refused(&place.run(&["study", "scan.npy", "--cell", "1e-3", "--pressures", "1e5", "--out", "t"]), "e_star");
+    place.write("waves.toml", "waves = 8\ngrid = 64\n");
+    assert_refused(&place.run(&["study", "waves.toml", "--pressures", "1e5", "--out", "t"]), "has no height map");
+    assert!(!place.path("t").exists());
+}
+
+/// Without spikes, all ways to remove them give one map.
+#[test]
+fn equal_maps_are_solved_once() {
+    let place = place();
+    let output = place.run(&study(&["--pressures", "1e5", "--out", "s"]));
+    assert_solved(&output);
+    assert!(text(&output.stdout).contains("'despike 12' gives the map of 'as prepared'"), "{}", text(&output.stdout));
+    let record = place.json("s/study.json");
+    let rows = record["rows"].as_array().expect("rows");
+    let copies: Vec<&Value> = rows.iter().filter(|row| !row["same_as"].is_null()).collect();
+    let names: Vec<_> = copies.iter().filter_map(|row| row["treatment"].as_str()).collect();
+    assert_eq!(names, ["despike 6", "despike 12"]);
+    for copy in copies {
+        assert_eq!((&copy["same_as"], &copy["wall_seconds"]), (&rows[0]["treatment"], &rows[0]["wall_seconds"]));
+    }
+    let journal = text(&place.bytes("s/sweep/sweep.jsonl"));
+    assert_eq!(journal.lines().count(), 1 + rows.len() - 2, "a line for each row that was solved, after the settings");
+}
+
+#[test]
+fn the_page_is_drawn_again_and_repeats_the_study() {
+    let place = place();
+    let words = ["--pressures", "1e4,1e5", "--level", "quadratic", "--no-despike", "--quiet", "--out", "s"];
+    assert_solved(&place.run(&study(&words)));
+    let page = place.bytes("s/report.html");
+    place.write("s/report.html", "");
+    assert_solved(&place.run(&["report", "s"]));
+    assert!(place.bytes("s/report.html") == page, "not the same page");
+    let html = text(&page);
+    assert_eq!(html.matches("\"png\":").count(), 3, "the base and both extremes");
+    let command = place.json("s/study.json")["command"].as_str().expect("a command").to_owned();
+    assert!(html.contains(&command), "{command}");
+    assert_solved(&place.run(&command.split(' ').skip(1).collect::<Vec<_>>()));
+    assert_eq!(place.json("again/study.json")["treatments"], place.json("s/study.json")["treatments"], "{command}");
+    assert_eq!(place.json("again/study.json")["loads"], place.json("s/study.json")["loads"], "{command}");
+}
+
+#[test]
+fn what_a_study_cannot_compare_is_refused_before_it_is_solved() {
+    let place = place();
+    // 40 x 32 points on 4e-4 m x 3.2e-4 m.
+    let refused = place.run(&study(&["--force", "128mN", "--out", "t"]));
+    assert_refused(&refused, "force: the maps of a study differ in size");
+    assert_refused(&refused, "are --pressures 1e6");
+    // The lowest height in the hole is doubtful, but that treatment is one of the others.
+    assert_solved(&place.run(&study(&["--pressures", "1e7", "--strict", "--quiet", "--out", "s"])));
+    let large = study(&["--pressures", "1e4,5e8", "--strict", "--out", "t"]);
+    assert_refused(&place.run(&large), "nothing was solved or written");
+    let prepare = [&["prepare"], &STUDY[1..6], &["--quiet", "--out", "ready"]].concat();
+    assert_solved(&place.run(&prepare));
+    let again = ["study", "ready", "--e-star", "1e9", "--pressures", "1e5", "--out", "t"];
+    assert_refused(&place.run(&again), "give the file that was measured, scan.npy");
     assert!(!place.path("t").exists());
 }

@@ -29,7 +29,7 @@ fn varied_keys_have_columns_and_rows_are_those_of_single_solves() {
     assert_eq!(column(&rows, "hardness"), hardness);
     assert_solved(&place.run(&["report", "s"]));
     let page = text(&place.bytes("s/report.html"));
-    assert!(page.contains("layer_thickness 0.002, hardness 10000000.0"), "a curve for each variation");
+    assert!(page.contains("layer thickness = 2 mm, hardness = 10 MPa"), "a curve for each variation");
     let words = "solve --waves 4 --grid 128 --quiet --pressure 2e5 --layer-thickness 2e-3 --hardness 5e6 --out one";
     assert_solved(&place.run(&words.split(' ').collect::<Vec<_>>()));
     let one = place.json("one/summary.json")["area_fraction"].to_string();
@@ -45,6 +45,25 @@ fn varied_keys_have_columns_and_rows_are_those_of_single_solves() {
     let pressures: Vec<f64> =
         column(&rows, "control_value").iter().map(|cell| cell.parse().expect("a number")).collect();
     assert!((pressures[0] / 1e5 - 1.0).abs() < 1e-12 && (pressures[1] / 2e5 - 1.0).abs() < 1e-12, "{pressures:?}");
+}
+
+/// The page of a varied sweep has one command, which gives the same rows.
+#[test]
+fn the_command_of_the_page_repeats_a_varied_sweep() {
+    for words in [
+        "--pressures 1e5,2e5 --seeds 1..2 --vary layer-thickness=0.5mm,2mm --vary kernel=love,spectral --out s",
+        "--e-star 1e9 --vary cell=1mm,2mm --vary force=1N,2N --out s",
+    ] {
+        let place = Place::new();
+        assert_solved(&run(&place, words));
+        assert_solved(&place.run(&["report", "s"]));
+        let page = text(&place.bytes("s/report.html"));
+        let commands: Vec<&str> = page.match_indices("rc sweep --").map(|(at, _)| &page[at..]).collect();
+        let [command] = commands[..] else { panic!("{} commands for {words}", commands.len()) };
+        let command = command.split('"').next().expect("the end of a text");
+        assert_solved(&place.run(&command.split(' ').skip(1).collect::<Vec<_>>()));
+        assert_eq!(result(&place.path("again")), result(&place.path("s")), "{command}");
+    }
 }
 
 #[test]
