@@ -51,6 +51,10 @@ class Leakage(NamedTuple):
     iterations: list[int]
     #: Seconds for both flows.
     wall_seconds: float
+    #: Flow K ΔP/(12 η) (m³/s), with ``viscosity`` and ``pressure_drop``.
+    flow: list[float] | None = None
+    #: Estimated error of the flow (m³/s).
+    flow_error: list[float | None] | None = None
 
 
 class ContactSpot(NamedTuple):

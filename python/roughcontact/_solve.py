@@ -92,6 +92,8 @@ def solve(
     energy_tolerance: float | None = None,
     tolerance: float | Literal["auto"] | None = None,
     leakage: bool | None = None,
+    viscosity: Quantity | None = None,
+    pressure_drop: Quantity | None = None,
     area_error: float | str | None = None,
     output_grid: Grid | None = None,
     precision: Literal["single", "double"] | None = None,
@@ -165,6 +167,8 @@ def solve(
         well below the error of the grid.
     leakage : bool, optional
         Also compute the flow of a thin film through the gap: :attr:`Result.leakage` and :attr:`Result.flux`.
+    viscosity, pressure_drop : float or str, optional
+        Viscosity (Pa s) of the film, and the pressure (Pa) that drives it across the cell or patch: adds ``leakage.flow`` (m³/s).
     area_error : float or str, optional
         Wanted relative error of the contact area, which chooses the grid (random surfaces).
     output_grid : int, (int, int) or str, optional

@@ -102,6 +102,8 @@ def sweep(
     energy_tolerance: float | None = None,
     tolerance: float | Literal["auto"] | None = None,
     leakage: bool | None = None,
+    viscosity: Quantity | None = None,
+    pressure_drop: Quantity | None = None,
     threads: int | None = None,
     memory_limit: int | str | None = None,
     time_limit: float | str | None = None,

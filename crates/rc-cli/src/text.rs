@@ -86,7 +86,7 @@ fn conductance(s: &Summary) -> String {
 }
 
 /// Lines of the permeances and constrictions of a flow.
-fn leakage_lines(leakage: &LeakageSummary) -> [(&'static str, String); 2] {
+fn leakage_lines(leakage: &LeakageSummary) -> Vec<(&'static str, String)> {
     let [x, y] = [0, 1].map(|axis| {
         if !leakage.percolates[axis] {
             return "0 (does not percolate)".to_owned();
@@ -96,7 +96,18 @@ fn leakage_lines(leakage: &LeakageSummary) -> [(&'static str, String); 2] {
     });
     let [gap_x, gap_y] =
         leakage.critical_gap.map(|gap| gap.map_or_else(|| "none".to_owned(), |gap| engineering(gap, "m")));
-    [("permeance", format!("{x} along x, {y} along y")), ("critical gap", format!("{gap_x} along x, {gap_y} along y"))]
+    let mut lines = vec![
+        ("permeance", format!("{x} along x, {y} along y")),
+        ("critical gap", format!("{gap_x} along x, {gap_y} along y")),
+    ];
+    if let (Some(flow), Some(error)) = (leakage.flow, leakage.flow_error) {
+        let [x, y] = [0, 1].map(|axis| {
+            let error = error[axis].map_or_else(String::new, |error| format!(" ± {error:.1e}"));
+            if leakage.percolates[axis] { format!("{:.4e}{error} m³/s", flow[axis]) } else { "0".to_owned() }
+        });
+        lines.push(("flow", format!("{x} along x, {y} along y")));
+    }
+    lines
 }
 
 fn penetration(s: &Summary) -> String {

@@ -15,6 +15,8 @@ pub enum Dimension {
     Force,
     /// An angle (degrees).
     Angle,
+    /// A dynamic viscosity (Pa s).
+    Viscosity,
 }
 
 /// How many base units one unit is.
@@ -27,14 +29,14 @@ enum Size {
 }
 
 /// Units that have decimal prefixes.
-const PREFIXED: [(&str, Dimension); 3] =
-    [("m", Dimension::Length), ("Pa", Dimension::Pressure), ("N", Dimension::Force)];
+const PREFIXED: [(&str, Dimension); 4] =
+    [("m", Dimension::Length), ("Pa", Dimension::Pressure), ("N", Dimension::Force), ("Pas", Dimension::Viscosity)];
 
 const PREFIXES: [(&str, i32); 10] =
     [("", 0), ("T", 12), ("G", 9), ("M", 6), ("k", 3), ("m", -3), ("u", -6), ("µ", -6), ("\u{3bc}", -6), ("n", -9)];
 
 /// All other units.
-const UNITS: [(&str, Dimension, Size); 14] = [
+const UNITS: [(&str, Dimension, Size); 16] = [
     ("cm", Dimension::Length, Size::Power(-2)),
     ("pm", Dimension::Length, Size::Power(-12)),
     ("angstrom", Dimension::Length, Size::Power(-10)),
@@ -46,6 +48,8 @@ const UNITS: [(&str, Dimension, Size); 14] = [
     ("N/m²", Dimension::Pressure, Size::Power(0)),
     ("N/mm2", Dimension::Pressure, Size::Power(6)),
     ("N/mm²", Dimension::Pressure, Size::Power(6)),
+    ("cP", Dimension::Viscosity, Size::Power(-3)),
+    ("P", Dimension::Viscosity, Size::Power(-1)),
     ("deg", Dimension::Angle, Size::Power(0)),
     ("°", Dimension::Angle, Size::Power(0)),
     ("rad", Dimension::Angle, Size::Factor(180.0 / std::f64::consts::PI)),
@@ -64,7 +68,8 @@ impl Dimension {
         let wanted = || format!("must be {self}, not '{text}'");
         let (number, unit) = text.split_at(end_of_number(text));
         let (value, unit): (f64, _) = (number.parse().map_err(|_| wanted())?, unit.trim());
-        match of_unit(unit) {
+        // Products are written with a blank or a dot.
+        match of_unit(&unit.replace([' ', '.', '·'], "")) {
             None => Err(format!("{}; '{unit}' is not a known unit", wanted())),
             Some((other, _)) if other != self => Err(format!("{}, which is {}", wanted(), other.name())),
             Some((_, Size::Power(power))) => Ok(shifted(number, power).unwrap_or(value)),
@@ -80,6 +85,7 @@ impl Dimension {
             Self::Pressure => "a pressure",
             Self::Force => "a force",
             Self::Angle => "an angle",
+            Self::Viscosity => "a viscosity",
         }
     }
 }
@@ -92,6 +98,7 @@ impl fmt::Display for Dimension {
             Self::Pressure => "a pressure in Pa, or with a unit such as 10kPa",
             Self::Force => "a force in N, or with a unit such as 20mN",
             Self::Angle => "an angle in degrees, or with a unit such as 0.1rad",
+            Self::Viscosity => "a viscosity in Pa s, or with a unit such as 1mPas",
         })
     }
 }
@@ -147,6 +154,8 @@ mod tests {
             (Dimension::Pressure, "1E1 bar", 1e6),
             (Dimension::Force, "20mN", 0.02),
             (Dimension::Force, "1MN", 1e6),
+            (Dimension::Viscosity, "1 mPa s", 1e-3),
+            (Dimension::Viscosity, "20cP", 0.02),
             (Dimension::Angle, "5deg", 5.0),
             (Dimension::Angle, "5", 5.0),
             (Dimension::Angle, "0.5rad", 90.0 / std::f64::consts::PI),

@@ -118,6 +118,12 @@ pub fn leakage(gap: &Field, params: &LeakageParams) -> Result<Leakage, LeakageEr
     Ok(Leakage { flows, flux: solved.flux })
 }
 
+/// Whether the film in `gap` (0 in contact) winds around the periodic cell along x, and along y.
+#[must_use]
+pub fn percolates(gap: &Field) -> [bool; 2] {
+    Clusters::above(gap, 0.0, false).percolates()
+}
+
 /// Maximum relative difference of the bounds on coarser grids. An error bar needs a few digits only.
 const ERROR_OF_COARSER: f64 = 1e-4;
 
@@ -204,7 +210,7 @@ const WIDE: f64 = 5e4;
 
 /// Permeances along both axes, and the flux along the axis with the larger one.
 fn flows(gap: &Field, params: &LeakageParams, role: Role<'_>) -> Result<OfGrid, LeakageError> {
-    let percolates = Clusters::above(gap, 0.0, false).percolates();
+    let percolates = percolates(gap);
     let mut thresholds = Thresholds::new(gap);
     let constrictions =
         Axis::BOTH.map(|axis| if percolates[axis.index()] { thresholds.constriction(axis) } else { None });

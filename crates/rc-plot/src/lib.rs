@@ -19,7 +19,7 @@ pub use colour::Palette;
 pub use file::{save_png, save_small_png, save_svg};
 pub use font::{FONT, register_font};
 pub use lines::{LinePlot, LineStyle, Series, draw_lines};
-pub use map::{Map, Shade, bitmap_size, draw_map, map_extent, range_of_most};
+pub use map::{Map, Shade, WALL, bitmap_size, draw_map, map_extent, range_of_most};
 pub use maps::{ContactPicture, ContactRows, MapPicture};
 pub use raster::{PixelMean, Raster};
 

@@ -1,9 +1,9 @@
 //! A map of a field, with title, bitmap, scale bar and colour bar.
 
-use plotters::element::{BitMapElement, Rectangle, Text};
+use plotters::element::{BitMapElement, Circle, Rectangle, Text};
 use plotters::prelude::{DrawingBackend, IntoFont as _};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{BLACK, Color as _, RGBColor, TextStyle};
+use plotters::style::{BLACK, Color as _, RGBColor, TextStyle, WHITE};
 use rc_core::{Field, Grid};
 
 use crate::{Area, FONT, Palette, PictureError, Raster};
@@ -31,16 +31,18 @@ pub enum Shade {
     Contact,
     /// Values are parts of contact, from 0 (light) to 1 (dark).
     PartOfContact,
-    /// Colours of a logarithmic scale, with a colour bar of powers of ten.
+    /// A flux: colours of a logarithmic scale, with a colour bar of powers of ten.
     ///
-    /// Zero is black.
-    Decades {
+    /// Where nothing flows, contact ([`WALL`]) is light grey and closed pockets (0) are brown.
+    Flow {
         /// log10 of value divided by `unit` at the ends of the colour bar.
         range: (f64, f64),
         /// Colours of the scale.
         palette: Palette,
         /// The value whose logarithm is 0.
         unit: f64,
+        /// Place of a ring, in parts of the sides of the cell.
+        ring: Option<[f64; 2]>,
     },
     /// Colours of a linear scale, with a colour bar. `NaN` is red.
     Values {
@@ -54,6 +56,11 @@ pub enum Shade {
         unit: &'static str,
     },
 }
+
+/// The value of elements in contact in a map of a flux.
+///
+/// It is negative and so small that a pixel with any flux has the colour of the flux.
+pub const WALL: f64 = -1e-300;
 
 /// Part of the points below, and above, the range of colours of heights.
 const BEYOND: f64 = 1e-3;
@@ -73,7 +80,7 @@ impl Shade {
     /// Whether the map has a colour bar beside it.
     #[must_use]
     pub fn has_colour_bar(&self) -> bool {
-        matches!(self, Self::Values { .. } | Self::Decades { .. })
+        matches!(self, Self::Values { .. } | Self::Flow { .. })
     }
 }
 
@@ -152,7 +159,11 @@ pub fn draw_map<B: DrawingBackend>(area: &Area<B>, map: &Map<'_>, font: f64) -> 
     scale_bar(area, map.side, size.0, bottom, font)?;
     match map.shade {
         Shade::Contact | Shade::PartOfContact => Ok(()),
-        Shade::Decades { range: (low, high), palette, .. } => {
+        Shade::Flow { range: (low, high), palette, ring, .. } => {
+            if let Some([x, y]) = ring {
+                let place = (x * f64::from(size.0), f64::from(bottom) - y * f64::from(size.1));
+                draw_ring(area, (place.0 as i32, place.1 as i32), font)?;
+            }
             let bar = ColourBar { low, high, palette, unit: "" };
             bar.draw(area, (right + (BAR_GAP * font) as i32, top), size.1, font)
         }
@@ -164,6 +175,19 @@ pub fn draw_map<B: DrawingBackend>(area: &Area<B>, map: &Map<'_>, font: f64) -> 
     }
 }
 
+/// The colours of contact and of closed pockets in a map of a flux, which its palette does not have.
+const CONTACT: RGBColor = RGBColor(205, 205, 205);
+const POCKET: RGBColor = RGBColor(150, 84, 42);
+
+/// A red ring with a white edge around a place.
+fn draw_ring<B: DrawingBackend>(area: &Area<B>, place: (i32, i32), font: f64) -> Result<(), PictureError> {
+    for (colour, width) in [(WHITE, 9), (MISSING, 5)] {
+        let ring = Circle::new(place, (0.7 * font) as i32, colour.stroke_width(width));
+        area.draw(&ring).map_err(PictureError::new)?;
+    }
+    Ok(())
+}
+
 /// The colour of a missing point, which no palette has.
 const MISSING: RGBColor = RGBColor(214, 39, 40);
 
@@ -173,10 +197,12 @@ fn rasterise(map: &Map<'_>, size: (u32, u32)) -> Raster {
             let inside = |value: f64| if value > 0.0 { 1.0 } else { 0.0 };
             Raster::of(map.field, size, inside, |part| Palette::Ink.colour(part))
         }
-        Shade::Decades { range: (low, high), palette, unit } => {
+        Shade::Flow { range: (low, high), palette, unit, .. } => {
             let span = if high > low { high - low } else { 1.0 };
-            let colour = |value: f64| {
-                if value > 0.0 { palette.colour(((value / unit).log10() - low) / span) } else { BLACK }
+            let colour = |value: f64| match value {
+                flux if flux > 0.0 => palette.colour(((flux / unit).log10() - low) / span),
+                wall if wall < 0.5 * WALL => CONTACT,
+                _ => POCKET,
             };
             Raster::of(map.field, size, |value| value, colour)
         }

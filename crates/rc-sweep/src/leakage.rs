@@ -20,6 +20,12 @@ pub struct LeakageSummary {
     ///
     /// Where nothing percolates, it is the leak on coarser grids, or through contacts that are a little smaller.
     pub permeance_error: [Option<f64>; 2],
+    /// Flow (m³/s) for the given viscosity and pressure drop, K ΔP/(12 η).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flow: Option<[f64; 2]>,
+    /// Error bar of the flow (m³/s), from that of the permeance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flow_error: Option<[Option<f64>; 2]>,
     /// Axis with the larger permeance, `x` or `y`, or null without flow.
     ///
     /// The flow along this axis is drawn and written.
@@ -48,14 +54,18 @@ impl LeakageSummary {
     pub(crate) fn cells(&self) -> impl Iterator<Item = (&'static str, Value)> {
         let ([x, y], [error_x, error_y]) = (self.permeance, self.permeance_error);
         let values = [json!(x), json!(y), json!(error_x), json!(error_y), json!(self.percolates)];
-        COLUMNS.into_iter().zip(values)
+        let flows = self.flow.map(|[x, y]| [("flow_x", json!(x)), ("flow_y", json!(y))]);
+        COLUMNS.into_iter().zip(values).chain(flows.into_iter().flatten())
     }
 
     /// Adds empty cells to the row of a flow that did not converge.
     ///
     /// Every row then has the same columns.
-    pub fn complete(cells: &mut Cells) {
-        for column in COLUMNS {
+    ///
+    /// With `has_film` they have flows in m³/s.
+    pub fn complete(cells: &mut Cells, has_film: bool) {
+        let flows = has_film.then_some(["flow_x", "flow_y"]).into_iter().flatten();
+        for column in COLUMNS.into_iter().chain(flows) {
             cells.entry(column).or_insert(Value::Null);
         }
     }

@@ -21,8 +21,8 @@ impl FlowPicture {
         summary.leakage.as_ref()?;
         let png = std::fs::read(folder.join(PICTURE_FILE)).ok()?;
         let png = base64::engine::general_purpose::STANDARD.encode(png);
-        let note = "The flux of a film whose pressure falls across the cell. Its unit is the mean flux. Nothing flows in the black parts: in \
-                    contact, and in pockets that contact closes.";
+        let note = "The flux of a film whose pressure falls across the cell. Its unit is the mean flux. Nothing flows in contact \
+                    (grey), and in pockets that contact closes (brown). The ring is the critical constriction.";
         Some(Self { png, note })
     }
 }

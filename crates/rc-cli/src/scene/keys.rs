@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::form::FormName;
 use super::names::{amplitudes, boundaries, methods, truncations};
-use super::quantity::{angle, force, length, pressure};
+use super::quantity::{angle, force, length, pressure, viscosity};
 use super::time_limit::TimeLimit;
 use super::values::{
     Conductivity, FilePrecision, Fraction, GridSpec, HeightsLike, Marks, PsdConvention, ToleranceSpec,
@@ -274,6 +274,14 @@ pub struct ContactKeys {
     #[arg(long, help_heading = help::PHYSICS)]
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub leakage: bool,
+    /// Viscosity (Pa s) of the film, with --pressure-drop: adds the flow in m³/s
+    #[arg(long, value_name = "PAS", help_heading = help::PHYSICS, hide_short_help = true, value_parser = viscosity::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "viscosity::read", skip_serializing_if = "Option::is_none")]
+    pub viscosity: Option<f64>,
+    /// Pressure (Pa) that drives the flow across the cell
+    #[arg(long, value_name = "PA", help_heading = help::PHYSICS, hide_short_help = true, value_parser = pressure::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "pressure::read", skip_serializing_if = "Option::is_none")]
+    pub pressure_drop: Option<f64>,
     /// Average pressure and gap to this many elements per side in the files
     #[arg(long, value_name = "N", help_heading = help::RESULTS, display_order = 100, allow_hyphen_values = true)]
     pub output_grid: Option<GridSpec>,

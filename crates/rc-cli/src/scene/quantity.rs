@@ -30,6 +30,7 @@ readers!(length, Dimension::Length);
 readers!(pressure, Dimension::Pressure);
 readers!(force, Dimension::Force);
 readers!(angle, Dimension::Angle);
+readers!(viscosity, Dimension::Viscosity);
 
 /// Reads mean pressures of the command line.
 pub(crate) fn pressures(text: &str) -> Result<Loads, String> {

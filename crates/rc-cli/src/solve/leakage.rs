@@ -3,12 +3,13 @@
 use std::convert::Infallible;
 use std::time::Instant;
 
-use rc_core::{Field, Units};
+use rc_core::{Boundary, Field, Units};
 use rc_leakage::{Leakage, LeakageError, LeakageParams};
 use rc_solver::{Solution, UNIFORM_BYTES_PER_ELEMENT};
 use rc_sweep::LeakageSummary;
 
 use crate::scene::keys::ContactKeys;
+use crate::scene::resolve::ContactSetup;
 
 /// A flow and its part of the summary.
 #[derive(Debug)]
@@ -24,11 +25,19 @@ impl SolvedFlow {
     ///
     /// # Errors
     /// [`LeakageError`].
-    pub(super) fn of(solution: &Solution<'_>, units: Units) -> Result<Self, LeakageError> {
+    pub(super) fn of(solution: &Solution<'_>, contact: &ContactSetup) -> Result<Self, LeakageError> {
         let started = Instant::now();
-        let leakage = rc_leakage::leakage(&open_gap(solution), &LeakageParams::default())?;
-        let summary = summary(&leakage, units, started.elapsed().as_secs_f64());
-        Ok(Self { leakage, summary })
+        let leakage = match contact.boundary {
+            Boundary::Periodic => rc_leakage::leakage(&open_gap(solution), &LeakageParams::default())?,
+            Boundary::Free => rc_leakage::leakage_of_patch(&open_gap(solution), &LeakageParams::default())?,
+        };
+        let summary = summary(&leakage, contact.units, started.elapsed().as_secs_f64());
+        // Q = K ΔP/(12 η).
+        let film = contact.keys.pressure_drop.zip(contact.keys.viscosity);
+        let factor = film.map(|(drop, viscosity)| drop / (12.0 * viscosity));
+        let flow = factor.map(|factor| summary.permeance.map(|permeance| permeance * factor));
+        let flow_error = factor.map(|factor| summary.permeance_error.map(|error| error.map(|error| error * factor)));
+        Ok(Self { leakage, summary: LeakageSummary { flow, flow_error, ..summary } })
     }
 }
 
@@ -36,11 +45,13 @@ impl SolvedFlow {
 ///
 /// Both are on the same number of elements.
 pub(crate) fn memory_factor(keys: &ContactKeys) -> f64 {
-    if keys.leakage { 1.0 + rc_leakage::BYTES_PER_ELEMENT / UNIFORM_BYTES_PER_ELEMENT as f64 } else { 1.0 }
+    // A patch is solved beside three mirror images.
+    let images = if keys.boundary == Some(Boundary::Free) { 4.0 } else { 1.0 };
+    if keys.leakage { 1.0 + images * rc_leakage::BYTES_PER_ELEMENT / UNIFORM_BYTES_PER_ELEMENT as f64 } else { 1.0 }
 }
 
 /// The gap with zero in contact. Small negative values of the solver are rounding and become zero.
-fn open_gap(solution: &Solution<'_>) -> Field {
+pub(crate) fn open_gap(solution: &Solution<'_>) -> Field {
     let mut gap = Field::zeros(solution.grid());
     let nx = solution.grid().nx();
     let values = gap.values_mut();
@@ -64,6 +75,8 @@ fn summary(leakage: &Leakage, units: Units, wall_seconds: f64) -> LeakageSummary
     LeakageSummary {
         permeance: flows.map(|flow| flow.permeance * cube),
         relative_error: flows.map(|flow| flow.info.error),
+        flow: None,
+        flow_error: None,
         permeance_error: flows.map(|flow| flow.permeance_error.map(|error| error * cube)),
         flow_direction: leakage.flow_axis().map(|axis| axis.name().to_owned()),
         percolates: flows.map(|flow| flow.percolates),

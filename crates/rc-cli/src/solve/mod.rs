@@ -8,7 +8,7 @@ mod dry_run;
 mod failure;
 mod flow_files;
 mod job;
-mod leakage;
+pub(crate) mod leakage;
 mod map_file;
 mod messages;
 mod over_ranks;

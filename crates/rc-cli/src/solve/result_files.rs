@@ -141,7 +141,7 @@ impl ResultFiles<'_> {
         let mut staged = Staged::new(folder)?;
         add_fields(&mut staged, self.contact, self.solution)?;
         if let Some(flow) = self.flow {
-            flow_files::add(&mut staged, self.contact, &flow.leakage, self.solution.grid())?;
+            flow_files::add(&mut staged, self.contact, flow, self.solution)?;
         }
         self.finish(staged, summary)
     }

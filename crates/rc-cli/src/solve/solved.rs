@@ -195,7 +195,7 @@ impl<'a> ProblemSetup<'a> {
 
     /// Computes the flow, if it is asked for.
     fn with_flow(self, solution: Solution<'a>, failure: Option<Failure>, wall: Duration) -> Solved<'a> {
-        let (flow, failure) = match self.contact.keys.leakage.then(|| SolvedFlow::of(&solution, self.contact.units)) {
+        let (flow, failure) = match self.contact.keys.leakage.then(|| SolvedFlow::of(&solution, self.contact)) {
             Some(Ok(flow)) => (Some(flow), failure),
             Some(Err(error)) => {
                 (None, failure.or_else(|| Some(Failure { what: format!("leakage: {error}"), remedy: "" })))

@@ -121,7 +121,7 @@ Manual pages with longer texts: rc man --out man";
 const SWEEP_MANUAL: &str = "\
 DIR (--out) receives sweep.csv: a line for each solve, by scene, seed, load. Its columns are scene (where there are several), seed, \
 control_value (Pa or m), and the keys of the summary of rc solve. --leakage adds permeance_x, permeance_y and \
-permeance_error_x, permeance_error_y (m³), and percolates (along x, along y). threads is the number of threads of the whole sweep, and peak_memory_bytes the peak memory of its process. Finished rows are kept \
+permeance_error_x, permeance_error_y (m³), and percolates (along x, along y), and makes sealing.json: the pressure at which the film closes. threads is the number of threads of the whole sweep, and peak_memory_bytes the peak memory of its process. Finished rows are kept \
 in sweep.jsonl at once: whatever ends the sweep, --resume continues after them.
 
 --threads is the number of all threads. As many rows as fit into memory (--memory-limit, or half of the machine's) are \

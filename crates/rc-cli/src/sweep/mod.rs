@@ -15,6 +15,7 @@ pub(crate) mod problems;
 mod realisations;
 mod results;
 mod rows;
+pub(crate) mod sealing;
 pub(crate) mod solved;
 mod specs;
 mod surfaces;
@@ -25,6 +26,7 @@ pub(crate) use mean::MEAN_FILE;
 pub use planned::{SweepLists, plan};
 pub use varied::Variation;
 
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -61,16 +63,18 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     plan.check_shard(shard)?;
     doubts::refuse_early(&surfaces)?;
     let sweep = Sweep::start(part::deal(plan, shard, &surfaces), shard, &folder, args.resume)?;
-    execute(&surfaces, &Arc::new(sweep))
+    execute(&surfaces, &Arc::new(sweep), (shard, &folder))
 }
 
 /// Solves the missing rows and reports the result.
-fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
+fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>, (shard, folder): (Shard, &Path)) -> Result<(), CliError> {
     let (started, threads) = (Instant::now(), surfaces.threads);
     let n_rows = sweep.n_rows();
     let n_before = n_rows - sweep.todo().len();
     let how = HowRows { run: &surfaces.run, threads, max_elements: surfaces.max_elements(), stop: None };
     let solved = solved::rows(surfaces, sweep, how)?;
+    let whole = shard == Shard::WHOLE && sweep.kept().rows().len() == n_rows;
+    let sealing = if whole && surfaces.leak() { Some(sealing::find(surfaces, sweep, folder)?) } else { None };
     let kept = sweep.kept();
     match (surfaces.run.json, surfaces.run.quiet) {
         (true, _) => terminal::print(&to_json(&kept.rows().values().collect::<Vec<_>>()))?,
@@ -86,7 +90,8 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
                 count(n_rows, "row")
             };
             let threads = count(threads, "thread");
-            terminal::print(&format!("{rows}{before} in {seconds} s, {threads}\n\nwritten to {table}\n"))?;
+            let sealing = sealing.map_or_else(String::new, |sealing| sealing.line() + "\n");
+            terminal::print(&format!("{rows}{before} in {seconds} s, {threads}\n{sealing}\nwritten to {table}\n"))?;
         }
     }
     solved.verdict(kept.rows(), n_rows, &surfaces.run)

@@ -52,7 +52,7 @@ impl<'a> Results<'a> {
         }
         let mut cells = summary.cells();
         if contact.setup.keys.leakage {
-            LeakageSummary::complete(&mut cells);
+            LeakageSummary::complete(&mut cells, contact.setup.keys.viscosity.is_some());
         }
         Ok(cells)
     }

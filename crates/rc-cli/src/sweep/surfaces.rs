@@ -114,6 +114,11 @@ impl Surfaces {
         &self.all
     }
 
+    /// Whether flows are computed.
+    pub(super) fn leak(&self) -> bool {
+        self.all.iter().any(SweptSurface::leaks)
+    }
+
     /// Quantity of the loads.
     pub(super) fn control(&self) -> ControlKind {
         self.control
@@ -140,6 +145,22 @@ impl Surfaces {
 }
 
 impl SweptSurface {
+    /// Whether flows are computed.
+    pub(super) fn leaks(&self) -> bool {
+        self.contact.leakage
+    }
+
+    /// The seed of a random surface.
+    pub(super) fn seed(&self) -> Option<u64> {
+        self.seed
+    }
+
+    /// The scene with its varied values, as `a, hardness 5e6`; empty if there is one alone.
+    pub(super) fn name(&self) -> String {
+        let varied = self.varied.iter().map(|(key, value)| format!("{key} {value}"));
+        std::iter::once(self.scene.clone()).filter(|name| !name.is_empty()).chain(varied).collect::<Vec<_>>().join(", ")
+    }
+
     /// Ratio of the memory of a row to that of its contact alone.
     pub(super) fn memory_factor(&self) -> f64 {
         memory_factor(&self.contact)

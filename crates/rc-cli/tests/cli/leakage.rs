@@ -122,3 +122,46 @@ fn memory_of_a_flow_is_estimated_and_refused() {
     assert_solved(&place.run(&limit));
     assert_refused(&place.run(&[&limit[..], &["--leakage"]].concat()), "leakage on 1024 x 1024 elements");
 }
+
+/// The film closes between two loads of a sweep. Solves at the ends of the bracket confirm it.
+#[test]
+fn a_sweep_finds_the_pressure_at_which_the_film_closes() {
+    let place = Place::new();
+    let scene = ["--waves", "8", "--roll-off", "2", "--grid", "64"];
+    let film = ["--viscosity", "2mPas", "--pressure-drop", "1bar"];
+    let loads = ["--pressures", "1e5:1.2e7:4", "--out", "seal"];
+    let output = place.run(&[&["sweep"][..], &scene, &film, &loads].concat());
+    assert_solved(&output);
+    assert!(text(&output.stdout).contains("sealing pressure: "), "{}", text(&output.stdout));
+    let sealing = place.json("seal/sealing.json");
+    let along_x = &sealing["surfaces"][0];
+    let [leaks, seals] = [0, 1].map(|i| along_x["bracket"][i].as_f64().expect("a pressure"));
+    assert!(leaks < seals && seals < 1.011 * leaks, "{along_x}");
+    for (pressure, percolates) in [(leaks, true), (seals, false)] {
+        let pressure = pressure.to_string();
+        let solve = ["--pressure", &pressure, "--json"];
+        let summary = summary_of(&place.run(&[&["solve"][..], &scene, &film, &solve].concat()));
+        let leakage = &summary["leakage"];
+        assert_eq!(leakage["percolates"][0], percolates, "{pressure} Pa");
+        let [k, flow] = ["permeance", "flow"].map(|key| leakage[key][0].as_f64().expect("a number"));
+        assert!((flow - k * 1e5 / 0.024).abs() <= 1e-12 * flow.abs(), "{flow}, {k}");
+    }
+}
+
+/// A patch leaks between its borders, and not around a cell.
+#[test]
+fn a_patch_leaks_between_opposite_borders() {
+    let place = Place::new();
+    // Walls along x at y = 0 leave a channel along x, which the periodic cell and the patch have alike.
+    let ridge = |i: usize| if (i / 32).is_multiple_of(31) { 1e-5 } else { 0.0 };
+    let heights: Vec<u8> = (0..32 * 32).flat_map(|i: usize| ridge(i).to_le_bytes()).collect();
+    place.write("ridges.npy", npy("<f8", false, "(32, 32)", &heights));
+    let solve =
+        ["solve", "ridges.npy", "--cell", "1e-3", "--e-star", "1e9", "--pressure", "1e5", "--leakage", "--json"];
+    let patch = summary_of(&place.run(&[&solve[..], &["--boundary", "free", "--out", "patch"]].concat()));
+    assert_eq!(patch["leakage"]["percolates"], serde_json::json!([true, false]), "{}", patch["leakage"]);
+    let flux = rc_heights::npy::read(&place.path("patch/flow_x.npy")).expect("a field");
+    let through: f64 = (0..32).map(|iy| flux.at(5, iy)).sum::<f64>() * 1e-3 / 32.0;
+    let permeance = patch["leakage"]["permeance"][0].as_f64().expect("a number");
+    assert!((through / permeance - 1.0).abs() < 1e-4, "{through:e} and {permeance:e}");
+}

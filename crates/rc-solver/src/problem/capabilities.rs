@@ -122,7 +122,7 @@ const ROWS: [Row; 22] = [
 ];
 
 /// Features that exclude each other with every method. The message names the key of the first.
-const PAIRS: [(Feature, Feature, &str); 21] = [
+const PAIRS: [(Feature, Feature, &str); 20] = [
     (Spectral, FreeBorders, "its waves are periodic"),
     (FreeBorders, KernelFunction, "the function describes a periodic cell"),
     (FreeBorders, Layer, "the response of a layer is known in a periodic cell only"),
@@ -137,7 +137,6 @@ const PAIRS: [(Feature, Feature, &str); 21] = [
     (AreaError, Checkpoint, "it solves on several grids (give grid instead)"),
     (AreaError, Sweep, "rc solve chooses a grid for each solve (give grid instead)"),
     (AreaError, DryRun, "its grid is not known before the solve (give grid instead)"),
-    (Leakage, FreeBorders, "the flow is computed on a periodic cell only"),
     (Watch, DryRun, "a dry run has no contact to show"),
     (Watch, Ranks, "no rank has the whole contact while it is solved"),
     (Leakage, Ranks, "the flow is not solved over ranks"),

@@ -64,7 +64,7 @@ impl ContactKeys {
         }
         or_lower!(self, lower, {
             young, poisson, young2, poisson2, e_star, pressure, penetration, force, hardness, conductivity, kernel, boundary, layer_thickness, layer_poisson, method, border_level,
-            energy_tolerance, tolerance, area_error, output_grid, precision
+            energy_tolerance, tolerance, area_error, viscosity, pressure_drop, output_grid, precision
         });
         self.leakage |= lower.leakage;
         self.elements |= lower.elements;

@@ -89,7 +89,7 @@ pub fn kernel(name: KernelName) -> Option<&'static dyn Kernel> {
 pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, CliError> {
     let keys = elastic_layer::with_poisson(keys)?;
     let defaults = ContactKeys { pressure: None, method: None, ..file::example().contact };
-    let keys = keys.over(defaults);
+    let keys = film(keys.over(defaults))?;
     let units = Units::new(cell, elasticity(&keys)?);
     let control = control(&keys, units)?;
     let hardness = hardness(&keys, (control, units))?;
@@ -126,6 +126,22 @@ fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
 /// [`CliError::Input`] for a force that is not positive.
 pub(crate) fn mean_pressure(force: f64, cell: PeriodicCell) -> Result<f64, CliError> {
     Ok(positive("force", "N", Some(force))? / cell.nominal_area())
+}
+
+/// The keys with a leakage if they have a film. Its viscosity and its pressure belong together.
+fn film(keys: ContactKeys) -> Result<ContactKeys, CliError> {
+    match (keys.viscosity, keys.pressure_drop) {
+        (None, None) => Ok(keys),
+        (Some(viscosity), Some(drop)) => {
+            positive("viscosity", "Pa s", Some(viscosity))?;
+            positive("pressure_drop", "Pa", Some(drop))?;
+            Ok(ContactKeys { leakage: true, ..keys })
+        }
+        (Some(_), None) => Err(CliError::input("viscosity: the flow in m³/s also needs pressure_drop (Pa); give both")),
+        (None, Some(_)) => {
+            Err(CliError::input("pressure_drop: the flow in m³/s also needs viscosity (Pa s); give both"))
+        }
+    }
 }
 
 /// The hardness in E*; infinite if it is not given.
@@ -241,7 +257,9 @@ mod tests {
             ("boundary = \"free\"\nkernel = \"own\"", "boundary"),
             ("boundary = \"free\"\nlayer_thickness = 1e-3", "boundary"),
             ("boundary = \"free\"\nmethod = \"gauss-seidel\"", "method"),
-            ("boundary = \"free\"\nleakage = true", "leakage"),
+            ("viscosity = 1e-3", "viscosity"),
+            ("pressure_drop = 1e5", "pressure_drop"),
+            ("viscosity = 0.0\npressure_drop = 1e5", "viscosity"),
             ("layer_thickness = 0.0", "layer_thickness"),
             ("layer_thickness = inf", "layer_thickness"),
             ("layer_thickness = 1e-3\ne_star = 1e9", "layer_poisson"),
