@@ -228,9 +228,12 @@ impl SurfaceSetup {
                 surface.origin = Some(origin);
                 Ok(surface)
             }
-            Source::Spectrum { table, amplitudes, seed, grid, .. } => {
+            Source::Spectrum { path, table, amplitudes, seed, grid } => {
                 let waves = Arc::new(table.realisation(*amplitudes, *seed)?);
-                self.generated(Some((Arc::clone(waves.surface()), Some(waves))), *grid)
+                let mut surface = self.generated(Some((Arc::clone(waves.surface()), Some(waves))), *grid)?;
+                let channel = self.keys.channel.as_deref();
+                surface.origin = Some(origin::of_spectrum(path, channel, (*seed, self.keys.like.is_some())));
+                Ok(surface)
             }
             Source::Shape { grid } => self.generated(None, *grid),
         }

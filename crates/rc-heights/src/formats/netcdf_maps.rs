@@ -21,8 +21,8 @@ use super::netcdf::{Arrays, is_number, open};
 use super::netcdf_axes::{self, Beside, Coordinates};
 use super::points::{self, Kind};
 use super::scalings::{Entries, Scalings, Value};
-use super::{axes, datx, unit};
-use crate::{Format, FormatError, HeightMap, Unit};
+use super::{axes, datx, netcdf_lines, unit};
+use crate::{Format, FormatError, HeightMap, ReadParams, Unit};
 
 /// Maximum number of frames of an array that are channels.
 const MOST_FRAMES: u64 = 256;
@@ -31,7 +31,7 @@ const MOST_FRAMES: u64 = 256;
 const MOST_LAYERS: u64 = 16;
 
 /// Number of values above which a vector is a profile or an axis, not a few settings.
-const FEW: u64 = 8;
+pub(super) const FEW: u64 = 8;
 
 /// An array, or a frame of it, that may be a map.
 #[derive(Clone)]
@@ -42,10 +42,14 @@ struct Listed {
     unit: Unit,
 }
 
-pub(super) fn channels(bytes: &[u8], format: Format, layout: Option<Layout>, max_bytes: u64) -> Channels<'_> {
+pub(super) fn channels<'a>(bytes: &[u8], format: Format, params: &ReadParams) -> Channels<'a> {
+    let (layout, max_bytes) = (params.layout, params.max_bytes);
     let arrays = Rc::new(open(bytes, format, max_bytes)?);
     let mut listed = Vec::new();
     list(&arrays, arrays.root()?, "", &mut listed)?;
+    if listed.is_empty() && params.row_is_map {
+        return netcdf_lines::channels(&arrays, arrays.root()?);
+    }
     if listed.is_empty() {
         return of_vectors(&arrays, arrays.root()?, "", max_bytes);
     }
@@ -82,7 +86,7 @@ fn list(arrays: &Arrays, group: &NcGroup, path: &str, found: &mut Vec<Listed>) -
 }
 
 /// Dimensions that are longer than 1, with their lengths.
-fn long(variable: &NcVariable) -> Vec<(usize, u64)> {
+pub(super) fn long(variable: &NcVariable) -> Vec<(usize, u64)> {
     variable.shape().into_iter().enumerate().filter(|(_, n)| *n != 1).collect()
 }
 
@@ -189,7 +193,7 @@ fn of_paths(arrays: &Arrays, paths: &[String; 3], max_bytes: u64) -> Result<Heig
 }
 
 /// Sides in metres if one of the units of x and y is named.
-fn with_units(format: Format, sides: [f64; 2], units: &[String; 2]) -> Result<(Option<[f64; 2]>, Unit), FormatError> {
+pub(super) fn with_units(format: Format, sides: [f64; 2], units: &[String; 2]) -> Result<(Option<[f64; 2]>, Unit), FormatError> {
     let [x, y] = units;
     let both = [unit::of_sides(format, "unit of x", x)?, unit::of_sides(format, "unit of y", y)?];
     let (factors, unit) = unit::of_both(both);
@@ -197,7 +201,7 @@ fn with_units(format: Format, sides: [f64; 2], units: &[String; 2]) -> Result<(O
 }
 
 /// What stands beside the array at `path`.
-fn scalings(arrays: &Arrays, path: &str) -> Result<Scalings, FormatError> {
+pub(super) fn scalings(arrays: &Arrays, path: &str) -> Result<Scalings, FormatError> {
     let group = path.rsplit_once('/').map_or(String::new(), |(group, _)| format!("{group}/"));
     Ok(Scalings::of(&attributes(arrays.variable(path)?.attributes()), &others(arrays, &group)?))
 }
