@@ -140,13 +140,7 @@ pub fn fit_hurst(spectrum: &[SpectrumBin], measured: &Measured) -> Option<HurstF
 }
 
 /// The fit of a law with its ends.
-fn with_ends(
-    law: &Law,
-    hurst_error: f64,
-    points: &[Point],
-    spectrum: &[SpectrumBin],
-    measured: &Measured,
-) -> HurstFit {
+fn with_ends(law: &Law, hurst_error: f64, points: &[Point], spectrum: &[SpectrumBin], measured: &Measured) -> HurstFit {
     let line = |ln_k: f64| law.ln_c() - 2.0 * (1.0 + law.hurst()) * ln_k;
     // A law that reaches the end of the bins ends with the grid.
     let last = points.last().map_or(0.0, |point| point.ln_k);

@@ -11,6 +11,12 @@ const CLIFF: f64 = 3.0;
 /// Minimum increase of the exponent at a bend.
 const LEAST_BEND: f64 = 0.6;
 
+/// Wavenumber below which there are few waves, in waves per longer side.
+const FEW_WAVES: f64 = 3.0;
+
+/// Maximum mean misfit of the bins in a law, in variances.
+const MOST_MISFIT: f64 = 3.0;
+
 /// Standard error of H from how rings average the spectrum, and from what a tip does to waves before the bend.
 const OF_RINGS: f64 = 0.02;
 const OF_TIP: f64 = 0.15;
@@ -164,7 +170,7 @@ pub(crate) fn best(points: &[Point], longest: f64) -> Option<(Law, f64)> {
             laws.extend([false, true].into_iter().filter_map(|noisy| fit(points, roll_off, tail, noisy)));
         }
     }
-    laws.retain(|law| is_self_affine(law, points));
+    laws.retain(|law| is_self_affine(law, points, longest));
     let best = *laws.iter().min_by(|a, b| a.cost.total_cmp(&b.cost))?;
     let near = laws.iter().filter(|law| law.cost < best.cost + 2.0);
     let spread = near.fold(0.0_f64, |most, law| most.max((law.hurst() - best.hurst()).abs()));
@@ -173,15 +179,21 @@ pub(crate) fn best(points: &[Point], longest: f64) -> Option<(Law, f64)> {
 }
 
 /// Whether the part of a law between its ends is long enough, and near the points.
-fn is_self_affine(law: &Law, points: &[Point]) -> bool {
+///
+/// Waves longer than a third of the side are too few to make the part longer.
+fn is_self_affine(law: &Law, points: &[Point], longest: f64) -> bool {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return false };
     let from = law.roll_off.unwrap_or(first.ln_k);
     let (end, _) = law.end(last.ln_k);
     let inside = || points.iter().filter(|point| (from..=end).contains(&point.ln_k));
+    let off = |point: &Point| point.ln_c - law.value(point.ln_k);
+    let misfit: f64 = inside().map(|point| off(point).powi(2) / point.variance).sum();
+    let n = inside().count();
     SELF_AFFINE.contains(&law.hurst())
-        && end - from >= LEAST_RATIO.ln() - 1e-9
-        && inside().count() >= FEWEST_BINS
-        && inside().all(|point| (point.ln_c - law.value(point.ln_k)).abs() <= point.tolerance)
+        && end - from.max((FEW_WAVES * longest).ln()) >= LEAST_RATIO.ln() - 1e-9
+        && n >= FEWEST_BINS
+        && misfit <= MOST_MISFIT * n as f64
+        && inside().all(|point| off(point).abs() <= point.tolerance)
 }
 
 /// The law with these ends that fits `points` best.

@@ -40,6 +40,8 @@ pub enum WarningCode {
     Assumed,
     /// The map does not repeat itself, but is solved as if it did.
     Border,
+    /// The twin of a map that is tilted.
+    Tilt,
     /// The grid is too coarse.
     Coarse,
     /// Heights jump at the edges of contacts.
@@ -56,7 +58,7 @@ impl Warning {
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Units,
         Self::Slope,
         Self::Load,
@@ -67,6 +69,7 @@ impl WarningCode {
         Self::Columns,
         Self::Assumed,
         Self::Border,
+        Self::Tilt,
         Self::Coarse,
         Self::Edges,
     ];
@@ -85,6 +88,7 @@ impl WarningCode {
             Self::Columns => "the map has very few rows or columns",
             Self::Assumed => "a unit, a size or a spacing was assumed",
             Self::Border => "the map does not repeat itself",
+            Self::Tilt => "a twin has the tilt of its map",
             Self::Coarse => "the grid is too coarse",
             Self::Edges => "heights jump at contact edges",
         }
@@ -104,6 +108,7 @@ impl WarningCode {
             Self::Columns => "columns",
             Self::Assumed => "assumed",
             Self::Border => "border",
+            Self::Tilt => "tilt",
             Self::Coarse => "coarse",
             Self::Edges => "edges",
         }

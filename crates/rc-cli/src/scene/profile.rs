@@ -101,9 +101,7 @@ fn check_heights(path: &Path, heights: impl ExactSizeIterator<Item = f64>) -> Re
         return fail(format_args!("a profile of {n} points; give at least {LEAST_POINTS}"));
     }
     match heights.enumerate().find(|(_, height)| !height.is_finite()) {
-        Some((i, height)) => {
-            fail(format_args!("point {} of the profile is {height}; heights must be finite", i + 1))
-        }
+        Some((i, height)) => fail(format_args!("point {} of the profile is {height}; heights must be finite", i + 1)),
         None => Ok(()),
     }
 }

@@ -220,8 +220,10 @@ impl SurfaceSetup {
             Source::Twin { like, of_map, heights, seed, grid } => {
                 let held = self.reference.lock().unwrap_or_else(PoisonError::into_inner).take();
                 let reference = held.map_or_else(|| Reference::read(like, of_map), Ok)?;
+                let tilted = warnings::surface::tilted(&reference.map);
                 let twin = reference.twin((*grid, self.cell.sides()), *seed, *heights)?;
                 let mut surface = self.of_map(like, twin, None)?;
+                surface.warnings.extend(tilted);
                 surface.notes.push(like::note(like, *seed, *heights));
                 let mut origin = origin::of(&like::file_of(like), of_map.channel.as_deref());
                 origin.treatments.push(format!("twin, seed {seed}"));

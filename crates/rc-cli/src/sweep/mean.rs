@@ -106,9 +106,8 @@ fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
 /// Waves are solved on the grid of the scene, and on those from halving it as long as they resolve the waves. A twin has
 /// the grid of its map, and its short waves. On half of the grid it would be another surface.
 fn plan(surface: &SweptSurface, control: ControlKind) -> Result<EnsemblePlan, CliError> {
-    let no_other = |what: &str| {
-        CliError::input(format_args!("error_of_mean: a {what} has no other realisations; omit it"))
-    };
+    let no_other =
+        |what: &str| CliError::input(format_args!("error_of_mean: a {what} has no other realisations; omit it"));
     let (sides, first_seed) = match &surface.setup.source {
         Source::Random { spectrum, grid } => (several(*grid, spectrum.waves)?, spectrum.seed),
         Source::Spectrum { table, grid, seed, .. } => (sides(*grid, table.waves()), *seed),

@@ -7,6 +7,7 @@ mod interrupt;
 mod list;
 mod map_mark;
 mod mean;
+mod means;
 mod merge;
 mod messages;
 mod part;
@@ -86,7 +87,8 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>) -> Result<(), CliError> {
                 count(n_rows, "row")
             };
             let threads = count(threads, "thread");
-            terminal::print(&format!("{rows}{before} in {seconds} s, {threads}\n\nwritten to {table}\n"))?;
+            let means = means::over_seeds(kept.rows());
+            terminal::print(&format!("{means}{rows}{before} in {seconds} s, {threads}\n\nwritten to {table}\n"))?;
         }
     }
     solved.verdict(kept.rows(), n_rows, &surfaces.run)

@@ -193,7 +193,11 @@ fn of_paths(arrays: &Arrays, paths: &[String; 3], max_bytes: u64) -> Result<Heig
 }
 
 /// Sides in metres if one of the units of x and y is named.
-pub(super) fn with_units(format: Format, sides: [f64; 2], units: &[String; 2]) -> Result<(Option<[f64; 2]>, Unit), FormatError> {
+pub(super) fn with_units(
+    format: Format,
+    sides: [f64; 2],
+    units: &[String; 2],
+) -> Result<(Option<[f64; 2]>, Unit), FormatError> {
     let [x, y] = units;
     let both = [unit::of_sides(format, "unit of x", x)?, unit::of_sides(format, "unit of y", y)?];
     let (factors, unit) = unit::of_both(both);
