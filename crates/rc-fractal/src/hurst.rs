@@ -14,6 +14,9 @@ pub(crate) const BIN_RATIO: f64 = 1.189_207_115_002_721; // 2^(1/4)
 pub(crate) const FEWEST_BINS: usize = 6;
 pub(crate) const LEAST_RATIO: f64 = 4.0;
 
+/// Wavenumber below which there are few waves, in waves per longer side. Longer waves do not make a law longer.
+pub(crate) const FEW_WAVES: f64 = 3.0;
+
 /// Maximum distance of a bin from the line, in ln C. The scatter of a bin of few waves is added.
 const STRAIGHT: f64 = 0.15;
 
@@ -135,7 +138,7 @@ pub fn fit_hurst(spectrum: &[SpectrumBin], measured: &Measured) -> Option<HurstF
     let points = bins(spectrum, measured);
     match law::best(&points, measured.longest) {
         Some((law, error)) => Some(with_ends(&law, error, &points, spectrum, measured)),
-        None => longest_line(&points),
+        None => longest_line(&points, measured.longest),
     }
 }
 
@@ -183,11 +186,11 @@ fn with_ends(law: &Law, hurst_error: f64, points: &[Point], spectrum: &[Spectrum
 ///
 /// The line through all bins of a candidate range is fitted by least squares. Bins of many waves have more weight. The
 /// straightest of equally long candidates is taken.
-fn longest_line(points: &[Point]) -> Option<HurstFit> {
+fn longest_line(points: &[Point], longest: f64) -> Option<HurstFit> {
     let mut best: Option<HurstFit> = None;
     for first in 0..points.len() {
         for last in first + FEWEST_BINS - 1..points.len() {
-            let Some(fit) = line(&points[first..=last]) else { continue };
+            let Some(fit) = line(&points[first..=last], longest) else { continue };
             let length = |fit: &HurstFit| fit.to / fit.from;
             let better = best.as_ref().is_none_or(|best| {
                 let ratio = length(&fit) / length(best);
@@ -234,9 +237,9 @@ fn bins(spectrum: &[SpectrumBin], measured: &Measured) -> Vec<Point> {
 /// The power law of Eq. (9) through all points.
 ///
 /// The line is ln C = ln c - 2(1+H) ln k. `None` if a point is too far from it, or if the line is not self-affine.
-fn line(points: &[Point]) -> Option<HurstFit> {
+fn line(points: &[Point], longest: f64) -> Option<HurstFit> {
     let (first, last) = (points.first()?, points.last()?);
-    if last.ln_k - first.ln_k < LEAST_RATIO.ln() {
+    if last.ln_k - first.ln_k.max((FEW_WAVES * longest).ln()) < LEAST_RATIO.ln() {
         return None;
     }
     // The weight follows from the tolerance, so that the scatter of a few long waves does not tilt the line.

@@ -1,6 +1,6 @@
 //! A power law with its ends: roll-off, cut-off, and what an instrument adds.
 
-use crate::hurst::{BIN_RATIO, FEWEST_BINS, LEAST_RATIO, Limit, Point, SELF_AFFINE};
+use crate::hurst::{BIN_RATIO, FEW_WAVES, FEWEST_BINS, LEAST_RATIO, Limit, Point, SELF_AFFINE};
 
 /// Penalty of each parameter of an end, in units of ln(number of bins). The criterion of Bayes has 1.
 const CAUTION: f64 = 2.0;
@@ -10,9 +10,6 @@ const CLIFF: f64 = 3.0;
 
 /// Minimum increase of the exponent at a bend.
 const LEAST_BEND: f64 = 0.6;
-
-/// Wavenumber below which there are few waves, in waves per longer side.
-const FEW_WAVES: f64 = 3.0;
 
 /// Maximum mean misfit of the bins in a law, in variances.
 const MOST_MISFIT: f64 = 3.0;
