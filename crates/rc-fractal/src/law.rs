@@ -1,6 +1,6 @@
 //! A power law with its ends: roll-off, cut-off, and what an instrument adds.
 
-use crate::hurst::{BIN_RATIO, FEW_WAVES, FEWEST_BINS, LEAST_RATIO, Limit, Point, SELF_AFFINE};
+use crate::bins::{BIN_RATIO, FEW_WAVES, FEWEST_BINS, LEAST_RATIO, Limit, Point, SELF_AFFINE};
 
 /// Penalty of each parameter of an end, in units of ln(number of bins). The criterion of Bayes has 1.
 const CAUTION: f64 = 2.0;
@@ -295,12 +295,8 @@ fn solved(matrix: [[f64; N]; N], right: [f64; N], n: usize) -> Option<([f64; N],
         }
         for j in i + 1..n {
             let factor = m[j][i] / pivot;
-            for k in i..n {
-                m[j][k] -= factor * m[i][k];
-            }
-            for c in 0..2 {
-                columns[j][c] -= factor * columns[i][c];
-            }
+            m[j] = std::array::from_fn(|k| m[j][k] - factor * m[i][k]);
+            columns[j] = std::array::from_fn(|c| columns[j][c] - factor * columns[i][c]);
         }
     }
     let mut found = [[0.0; 2]; N];

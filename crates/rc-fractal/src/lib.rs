@@ -31,6 +31,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bins;
 mod draws;
 mod hurst;
 mod law;
@@ -45,7 +46,8 @@ mod table;
 mod twin;
 mod waves;
 
-pub use hurst::{HurstFit, Limit, Measured, fit_hurst};
+pub use bins::{Limit, Measured};
+pub use hurst::{HurstFit, fit_hurst};
 pub use moments::{Moments, height_and_slope_of_grid, height_and_slope_of_patch, moments_of_grid};
 pub use params::{Amplitudes, MAX_WAVES, Normalisation, SpectrumError, SpectrumParams, Truncation};
 pub use profile::{LEAST_POINTS, spectrum_of_profile};

@@ -138,7 +138,7 @@ fn sides(grid: Grid, waves: usize) -> Vec<usize> {
     if grid.nx() != grid.ny() {
         return vec![grid.nx().max(grid.ny())];
     }
-    let halvings = (1..16).map_while(|i| (grid.nx() % (1 << i) == 0).then(|| grid.nx() >> i));
+    let halvings = (1..16).map_while(|i| grid.nx().is_multiple_of(1 << i).then(|| grid.nx() >> i));
     let mut sides: Vec<usize> = halvings.take_while(|&side| side >= coarsest(waves)).collect();
     sides.insert(0, grid.nx());
     sides.reverse();

@@ -219,7 +219,7 @@ fn profiles_of_instruments_are_like_texts_and_are_the_source() {
     let heights: Vec<f64> = (0..200).map(|i| (0.37 * f64::from(i * i)).sin() + 0.1 * f64::from(i % 7)).collect();
     place.write(
         "profile.txt",
-        heights.iter().enumerate().map(|(i, z)| format!("{} {z}\n", 0.5 * i as f64)).collect::<String>(),
+        heights.iter().enumerate().map(|(i, z)| format!("{} {z}\n", 0.5 * i as f64)).collect::<Vec<_>>().concat(),
     );
     place.write("profile.sur", sur(&heights, 0.5));
     place.write("profile.nc", netcdf(&heights, 0.5));

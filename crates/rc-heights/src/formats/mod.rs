@@ -32,6 +32,7 @@ mod nanoscope;
 pub mod nc_writer;
 mod netcdf;
 mod netcdf_axes;
+mod netcdf_beside;
 mod netcdf_lines;
 mod netcdf_maps;
 pub mod npy;

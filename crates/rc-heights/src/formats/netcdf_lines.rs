@@ -10,7 +10,7 @@ use super::channel::{Channel, Channels};
 use super::field::field;
 use super::netcdf::{Arrays, is_number};
 use super::netcdf_axes::unit_name;
-use super::netcdf_maps::{FEW, long, scalings, with_units};
+use super::netcdf_beside::{FEW, long, scalings, with_units};
 use crate::{FormatError, HeightMap, Unit};
 
 /// The profiles of a group, as maps of one row.
