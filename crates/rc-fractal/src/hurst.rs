@@ -1,27 +1,12 @@
-//! The Hurst exponent of a measured spectrum, and its range of wavenumbers.
+//! The Hurst exponent of a measured spectrum, and the ends of its power law.
 
+use std::f64::consts::TAU;
+
+use crate::bins::{
+    BIN_RATIO, FEW_WAVES, FEWEST_BINS, LEAST_RATIO, Limit, Measured, Point, RESOLVED, SELF_AFFINE, bins,
+};
+use crate::law::{self, Law};
 use crate::radial::SpectrumBin;
-
-/// Width of a bin of rings, as a ratio of wavenumbers. Every decade then has the same weight.
-const BIN_RATIO: f64 = 1.189_207_115_002_721; // 2^(1/4)
-
-/// Minimum number of bins in a range, and minimum ratio of its wavenumbers.
-const FEWEST_BINS: usize = 6;
-const LEAST_RATIO: f64 = 4.0;
-
-/// Maximum distance of a bin from the line, in ln C. The scatter of a bin of few waves is added.
-const STRAIGHT: f64 = 0.15;
-
-/// Number of standard deviations that count as scatter.
-const SCATTER: f64 = 2.5;
-
-/// Exponents of self-affine surfaces, with a small margin.
-///
-/// A roll-off is straight too, but has H = -1.
-const SELF_AFFINE: std::ops::RangeInclusive<f64> = 0.0..=1.2;
-
-/// Minimum C of a ring relative to the maximum C. Smaller values are only rounding.
-const ROUNDING: f64 = 1e-20;
 
 /// A power law C ∝ q^(-2(1+H)) for a part of a spectrum.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,44 +16,100 @@ pub struct HurstFit {
     ///
     /// Above 1 the surface is smoother than a self-affine one, although its spectrum is a power law.
     pub hurst: f64,
+    /// Standard error of H.
+    pub hurst_error: f64,
     /// ln C of the line at one wave per cell, with C in λ⁴.
     pub ln_c: f64,
     /// First wavenumber of the range, in waves per cell.
     pub from: f64,
     /// Last wavenumber of the range.
     pub to: f64,
-    /// Root mean square distance of the bins from the line, in ln C.
+    /// Root mean square distance of the bins from the law with its ends, in ln C.
     ///
     /// The weights are those of the fit.
     pub deviation: f64,
+    /// Wavenumber below which the spectrum is flat, in waves per cell. `None` where it is not seen.
+    pub roll_off: Option<f64>,
+    /// Wavenumber of the shortest waves, if the spectrum falls there at once.
+    pub cut_off: Option<f64>,
+    /// Wavenumber at which the spectrum is twice or half of its law, or ends, and why.
+    ///
+    /// `None` where only a part of the spectrum is a power law.
+    pub resolution: Option<(f64, Limit)>,
 }
 
-/// A bin with ln of its wavenumber, ln of its C, and its maximum distance from a line.
-#[derive(Clone, Copy)]
-struct Point {
-    ln_k: f64,
-    ln_c: f64,
-    tolerance: f64,
-}
-
-/// Fits the Hurst exponent H of Eq. (8) to a spectrum.
+/// Fits the Hurst exponent H of Eq. (8) to a spectrum, with the ends of its power law.
 ///
 /// H describes the scaling x → t x and h → t^H h.
 ///
-/// The range of the fit is the longest part of `spectrum` that is a straight line in logarithms, with the slope of a
-/// self-affine surface. `None` when no such part covers a factor of 4 in wavenumber.
+/// The means over bins of a quarter of an octave are compared with power laws that may be flat at long waves (roll-off),
+/// and that may end at short waves with a cut-off, with a factor exp(-g k²) (a lens), with a steeper power law (a tip),
+/// or with a constant that is added (noise). The law with the least misfit is taken, where each parameter of an end
+/// costs twice what the criterion of Bayes says. A law must cover a factor of 4 in wavenumber, with H from 0 to 1.2,
+/// and no bin in this range may be further from it than 15 % plus the scatter of a mean over its random waves.
 ///
-/// The line through all bins of a candidate range is fitted by least squares. Bins of many waves have more weight. No
-/// bin may be further from the line than 15 % plus the scatter of a mean over its random waves. The straightest of
-/// equally long candidates is taken. Tests `the_exponent_of_a_generated_surface_and_its_range_are_found` and
-/// `roll_off_and_truncation_are_left_out`.
+/// If there is no such law, the longest part of `spectrum` that is a straight line in logarithms is taken, and nothing
+/// is said about its ends. `None` when no such part covers a factor of 4 either. Tests
+/// `the_exponent_of_a_generated_surface_and_its_range_are_found` and `roll_off_and_truncation_are_left_out`, and the
+/// tests `ends`.
 #[must_use]
-pub fn fit_hurst(spectrum: &[SpectrumBin]) -> Option<HurstFit> {
-    let points = bins(spectrum);
+pub fn fit_hurst(spectrum: &[SpectrumBin], measured: &Measured) -> Option<HurstFit> {
+    let points = bins(spectrum, measured);
+    match law::best(&points, measured.longest) {
+        Some((law, error)) => Some(with_ends(&law, error, &points, spectrum, measured)),
+        None => longest_line(&points, measured.longest),
+    }
+}
+
+/// The fit of a law with its ends.
+fn with_ends(law: &Law, hurst_error: f64, points: &[Point], spectrum: &[SpectrumBin], measured: &Measured) -> HurstFit {
+    let line = |ln_k: f64| law.ln_c() - 2.0 * (1.0 + law.hurst()) * ln_k;
+    // A law that reaches the end of the bins ends with the grid.
+    let last = points.last().map_or(0.0, |point| point.ln_k);
+    // Waves end at the last ring that is not far below the law, near the bin where the law ends.
+    let ring_at = |at: f64| {
+        let near = |ring: &&SpectrumBin| (ring.wavenumber.ln() - at).abs() < 2.0 * BIN_RATIO.ln();
+        let falls = spectrum.iter().filter(near).find(|ring| ring.psd.ln() < line(ring.wavenumber.ln()) - TAU.ln());
+        falls.map_or(at.exp(), |ring| ring.wavenumber - 0.5 * measured.longest)
+    };
+    let cut_off = law.cut_off().map(ring_at).or_else(|| {
+        let end = last.exp() * BIN_RATIO;
+        (end < RESOLVED * measured.nyquist).then(|| ring_at(last))
+    });
+    let (end, limit) = law.end(last);
+    let resolution = match limit {
+        Limit::Grid => measured.nyquist,
+        Limit::Noise | Limit::Blunt => cut_off.map_or(end.exp(), |cut| cut.min(end.exp())),
+    };
+    let first = points.first().map_or(0.0, |point| point.ln_k);
+    let from = law.roll_off().map_or(first, |at| at.max(first));
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for point in points.iter().filter(|point| (from..=end).contains(&point.ln_k)) {
+        let weight = point.tolerance.powi(-2);
+        (sum, weights) = (sum + weight * (point.ln_c - law.value(point.ln_k)).powi(2), weights + weight);
+    }
+    HurstFit {
+        hurst: law.hurst(),
+        hurst_error,
+        ln_c: law.ln_c(),
+        from: from.exp(),
+        to: cut_off.map_or(end.exp(), |cut| cut.min(end.exp())),
+        deviation: (sum / weights).sqrt(),
+        roll_off: law.roll_off().map(f64::exp),
+        cut_off,
+        resolution: Some((resolution, limit)),
+    }
+}
+
+/// The longest straight part of the spectrum.
+///
+/// The line through all bins of a candidate range is fitted by least squares. Bins of many waves have more weight. The
+/// straightest of equally long candidates is taken.
+fn longest_line(points: &[Point], longest: f64) -> Option<HurstFit> {
     let mut best: Option<HurstFit> = None;
     for first in 0..points.len() {
         for last in first + FEWEST_BINS - 1..points.len() {
-            let Some(fit) = line(&points[first..=last]) else { continue };
+            let Some(fit) = line(&points[first..=last], longest) else { continue };
             let length = |fit: &HurstFit| fit.to / fit.from;
             let better = best.as_ref().is_none_or(|best| {
                 let ratio = length(&fit) / length(best);
@@ -82,32 +123,12 @@ pub fn fit_hurst(spectrum: &[SpectrumBin]) -> Option<HurstFit> {
     best
 }
 
-fn bins(spectrum: &[SpectrumBin]) -> Vec<Point> {
-    let noise = spectrum.iter().fold(0.0_f64, |most, ring| most.max(ring.psd)) * ROUNDING;
-    let mut points = Vec::new();
-    let mut rings = spectrum.iter().filter(|ring| ring.psd > noise).peekable();
-    while let Some(first) = rings.next() {
-        let end = first.wavenumber * BIN_RATIO;
-        let (mut waves, mut ln_k, mut power) = (0.0, 0.0, 0.0);
-        let mut ring = Some(first);
-        while let Some(SpectrumBin { wavenumber, psd, n_modes }) = ring.copied() {
-            let n = n_modes as f64;
-            (waves, ln_k, power) = (waves + n, ln_k + n * wavenumber.ln(), power + n * psd);
-            ring = rings.next_if(|next| next.wavenumber < end);
-        }
-        // k and -k are one wave. The standard deviation of a random wave's power is its mean.
-        let tolerance = STRAIGHT + SCATTER / (0.5 * waves).sqrt();
-        points.push(Point { ln_k: ln_k / waves, ln_c: (power / waves).ln(), tolerance });
-    }
-    points
-}
-
 /// The power law of Eq. (9) through all points.
 ///
 /// The line is ln C = ln c - 2(1+H) ln k. `None` if a point is too far from it, or if the line is not self-affine.
-fn line(points: &[Point]) -> Option<HurstFit> {
+fn line(points: &[Point], longest: f64) -> Option<HurstFit> {
     let (first, last) = (points.first()?, points.last()?);
-    if last.ln_k - first.ln_k < LEAST_RATIO.ln() {
+    if last.ln_k - first.ln_k.max((FEW_WAVES * longest).ln()) < LEAST_RATIO.ln() {
         return None;
     }
     // The weight follows from the tolerance, so that the scatter of a few long waves does not tilt the line.
@@ -124,7 +145,10 @@ fn line(points: &[Point]) -> Option<HurstFit> {
     }
     let deviation = mean(&|point| off(point).powi(2)).sqrt();
     let (from, to) = (first.ln_k.exp(), last.ln_k.exp());
-    Some(HurstFit { hurst, ln_c: y - slope * x, from, to, deviation })
+    let spread = mean(&|point| (point.ln_k - x).powi(2)).sqrt();
+    let hurst_error = 0.5 * deviation / (spread * (points.len() as f64 - 2.0).sqrt());
+    let (roll_off, cut_off, resolution) = (None, None, None);
+    Some(HurstFit { hurst, hurst_error, ln_c: y - slope * x, from, to, deviation, roll_off, cut_off, resolution })
 }
 
 #[cfg(test)]
@@ -134,10 +158,12 @@ mod tests {
     use super::*;
     use crate::{Amplitudes, SpectrumParams, Surface, radial_spectrum};
 
+    const PERIODIC: Measured = Measured { nyquist: 256.0, longest: 1.0, windowed: false };
+
     fn fit(params: &SpectrumParams) -> HurstFit {
         let surface = Surface::new(params).expect("valid parameters");
         let heights = surface.sample_on(Grid::square(512).expect("a grid")).expect("resolved waves");
-        fit_hurst(&radial_spectrum(&heights)).expect("a power law")
+        fit_hurst(&radial_spectrum(&heights), &PERIODIC).expect("a power law")
     }
 
     #[test]
@@ -170,6 +196,6 @@ mod tests {
     fn a_single_wave_has_no_exponent() {
         let grid = Grid::square(64).expect("a grid");
         let wave = rc_core::Field::from_fn(grid, |at| (std::f64::consts::TAU * 5.0 * at.x).cos());
-        assert_eq!(fit_hurst(&radial_spectrum(&wave)), None);
+        assert_eq!(fit_hurst(&radial_spectrum(&wave), &Measured { nyquist: 32.0, ..PERIODIC }), None);
     }
 }

@@ -31,8 +31,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bins;
 mod draws;
 mod hurst;
+mod law;
 mod moments;
 mod params;
 mod power;
@@ -45,6 +47,7 @@ mod texture;
 mod twin;
 mod waves;
 
+pub use bins::{Limit, Measured};
 pub use hurst::{HurstFit, fit_hurst};
 pub use moments::{Moments, height_and_slope_of_grid, height_and_slope_of_patch, moments_of_grid};
 pub use params::{Amplitudes, MAX_WAVES, Normalisation, SpectrumError, SpectrumParams, Truncation};

@@ -32,7 +32,7 @@ pub enum TableError {
         rows: usize,
     },
     /// A wavenumber is not positive, not finite, or not above the one before.
-    #[error("row {row}: the wavenumber {value} must be positive, finite and above that of the row before")]
+    #[error("row {row}: the wavenumber {value:e} must be positive, finite and above that of the row before")]
     Wavenumber {
         /// Number of the row.
         row: usize,
@@ -40,7 +40,7 @@ pub enum TableError {
         value: f64,
     },
     /// A value of C is negative or not finite.
-    #[error("row {row}: the spectrum is {value}; it must be finite and at least 0")]
+    #[error("row {row}: the spectrum is {value:e}; it must be finite and at least 0")]
     Density {
         /// Number of the row.
         row: usize,

@@ -27,6 +27,8 @@ pub struct EnsemblePlan {
     /// The surface without seed and grid. Each of its loads has its own mean.
     pub surface: PlannedSurface,
     /// Elements per side of the possible grids, coarsest first.
+    ///
+    /// On one grid, which may be a rectangle with this longer side, the mean is that of its realisations.
     pub sides: Vec<usize>,
     /// Seed of the first realisation. The seeds of level l begin here plus 10000 l.
     pub first_seed: u64,
@@ -71,8 +73,8 @@ pub struct EnsembleMean {
     ///
     /// It is larger than that of known variances, by the number and the skewness of the realisations.
     pub standard_error: f64,
-    /// Estimated error of the finest grid.
-    pub grid_error: f64,
+    /// Estimated error of the finest grid. `None` if there is only one.
+    pub grid_error: Option<f64>,
     /// Square root of the sum of squares of both errors, relative to the mean.
     pub relative_error: f64,
     /// Wanted maximum of `relative_error`.
@@ -312,7 +314,7 @@ impl Ensemble {
             mean: estimate.mean,
             standard_error: estimate.standard_error,
             grid_error: estimate.bias,
-            relative_error: estimate.standard_error.hypot(estimate.bias) / estimate.mean.abs(),
+            relative_error: estimate.standard_error.hypot(estimate.bias.unwrap_or(0.0)) / estimate.mean.abs(),
             wanted_error: wanted.error,
             not_converged,
             cost: estimate.cost(),

@@ -78,8 +78,8 @@ pub(crate) struct Estimate {
     pub(crate) mean: f64,
     /// Rms error of the mean, with the uncertainty of the variances of few realisations.
     pub(crate) standard_error: f64,
-    /// Estimated error of the finest grid.
-    pub(crate) bias: f64,
+    /// Estimated error of the finest grid. `None` if there is only one.
+    pub(crate) bias: Option<f64>,
     /// Whether the wanted error is reached.
     ///
     /// It is compared with the square root of the sum of both squared errors.
@@ -111,7 +111,8 @@ pub(crate) fn next(samples: &[Samples], n_grids: usize, wanted: f64) -> Step {
     let counts: Vec<usize> = levels.iter().map(|level| level.realisations).collect();
     let mean: f64 = levels.iter().map(|level| level.mean).sum();
     let wanted = wanted * mean.abs();
-    let bias = bias(&levels);
+    let known = (n_grids > 1).then(|| bias(&levels));
+    let bias = known.unwrap_or(0.0);
     let is_last = levels.len() == n_grids;
     let most_bias = BIAS_SHARE[usize::from(is_last)] * wanted;
     let variance: f64 = variances.iter().zip(&counts).map(|(variance, &n)| variance / n as f64).sum();
@@ -125,7 +126,7 @@ pub(crate) fn next(samples: &[Samples], n_grids: usize, wanted: f64) -> Step {
         return Step::More(counts.into_iter().chain([PILOT[1]]).collect());
     }
     let is_reached = variance + bias.powi(2) <= wanted.powi(2);
-    Step::Done(Estimate { mean, standard_error: variance.sqrt(), bias, is_reached, levels })
+    Step::Done(Estimate { mean, standard_error: variance.sqrt(), bias: known, is_reached, levels })
 }
 
 /// The numbers of realisations that give a variance at minimum cost.
@@ -245,13 +246,21 @@ mod tests {
     fn the_mean_is_within_its_error_at_a_fraction_of_the_cost() {
         for wanted in [0.02, 0.005, 0.002] {
             let estimate = solve(6, 0.002, wanted);
-            let error = estimate.standard_error.hypot(estimate.bias);
+            let error = estimate.standard_error.hypot(estimate.bias.expect("several grids"));
             assert!(estimate.is_reached && error <= wanted * estimate.mean, "{wanted}: {estimate:?}");
             assert!((estimate.mean - 1.0).abs() < 3.0 * error, "{wanted}: {estimate:?}");
             // The cost of differences is small. With enough realisations, the total cost is less than a third of the
             // cost on the finest grid.
             assert!(wanted > 0.005 || 3.0 * estimate.cost() < estimate.cost_of_plain_mean(), "{wanted}: {estimate:?}");
         }
+    }
+
+    #[test]
+    fn a_mean_on_one_grid_is_a_plain_mean() {
+        let estimate = solve(1, 0.002, 0.005);
+        assert!(estimate.is_reached && estimate.bias.is_none() && estimate.levels.len() == 1, "{estimate:?}");
+        assert!(estimate.standard_error <= 0.005 * estimate.mean, "{estimate:?}");
+        assert!((estimate.cost() / estimate.cost_of_plain_mean() - 1.0).abs() < 1e-12, "{estimate:?}");
     }
 
     #[test]
@@ -270,7 +279,7 @@ mod tests {
         );
         let estimate = solve(4, 0.2, 0.005);
         assert!(!estimate.is_reached && estimate.levels.len() == 4, "{estimate:?}");
-        assert!(estimate.bias > 0.02 * estimate.mean, "{estimate:?}");
+        assert!(estimate.bias.is_some_and(|bias| bias > 0.02 * estimate.mean), "{estimate:?}");
     }
 
     /// Values without correlation, of mean 0 and variance 1 (SplitMix64).

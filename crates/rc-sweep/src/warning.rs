@@ -42,6 +42,8 @@ pub enum WarningCode {
     Border,
     /// A map with a lay was mirrored.
     Mirror,
+    /// The twin of a map that is tilted.
+    Tilt,
     /// The grid is too coarse.
     Coarse,
     /// Heights jump at the edges of contacts.
@@ -58,7 +60,7 @@ impl Warning {
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Units,
         Self::Slope,
         Self::Load,
@@ -70,6 +72,7 @@ impl WarningCode {
         Self::Assumed,
         Self::Border,
         Self::Mirror,
+        Self::Tilt,
         Self::Coarse,
         Self::Edges,
     ];
@@ -89,6 +92,7 @@ impl WarningCode {
             Self::Assumed => "a unit, a size or a spacing was assumed",
             Self::Border => "the map does not repeat itself",
             Self::Mirror => "a map with a lay was mirrored",
+            Self::Tilt => "a twin has the tilt of its map",
             Self::Coarse => "the grid is too coarse",
             Self::Edges => "heights jump at contact edges",
         }
@@ -109,6 +113,7 @@ impl WarningCode {
             Self::Assumed => "assumed",
             Self::Border => "border",
             Self::Mirror => "mirror",
+            Self::Tilt => "tilt",
             Self::Coarse => "coarse",
             Self::Edges => "edges",
         }

@@ -14,3 +14,6 @@ pub(crate) const SCENE_FILE: &str = "scene.toml";
 
 /// File with the summary of a solve.
 pub(crate) const SUMMARY_FILE: &str = "summary.json";
+
+/// The table of an isotropic spectrum.
+pub(crate) const PSD_FILE: &str = "psd.csv";

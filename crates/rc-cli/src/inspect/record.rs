@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use rc_core::{Field, Histogram};
-use rc_fractal::{HurstFit, Moments, SpectrumBin, fit_hurst, radial_spectrum};
+use rc_fractal::{HurstFit, Limit, Measured, Moments, SpectrumBin, fit_hurst, radial_spectrum};
 use rc_heights::{AreaParameters, BorderStep, Effect, MapStatistics};
 use rc_sweep::{MapOrigin, Warning};
 use serde::Serialize;
@@ -57,6 +57,9 @@ pub(crate) struct SurfaceRecord {
     pub(crate) border_step: Option<f64>,
     /// Whether the spectrum is of the heights under Hann's window, because they are not periodic.
     pub(crate) windowed: bool,
+    /// Exponent and ends of the power law in the spectrum.
+    #[serde(flatten)]
+    pub(crate) ends: EndsRow,
     /// The power law in the spectrum, if it has one.
     pub(crate) hurst_fit: Option<HurstRow>,
     /// Radially averaged power spectral density; empty if points are missing.
@@ -97,8 +100,43 @@ pub(crate) struct HurstRow {
     pub(crate) from_waves: f64,
     /// Last wavenumber of the range, in waves per cell.
     pub(crate) to_waves: f64,
-    /// Rms distance of the spectrum from the law, in ln C.
+    /// Rms distance of the spectrum from the law with its ends, in ln C.
     pub(crate) deviation: f64,
+}
+
+/// Exponent and ends of the power law in the spectrum; `None` where it is not seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct EndsRow {
+    /// Hurst exponent H.
+    pub(crate) hurst: Option<f64>,
+    /// Standard error of H.
+    pub(crate) hurst_error: Option<f64>,
+    /// Wavelength (m) above which the spectrum is flat.
+    pub(crate) roll_off_wavelength: Option<f64>,
+    /// Wavelength (m) of the shortest waves.
+    pub(crate) cut_off_wavelength: Option<f64>,
+    /// Wavelength (m) at which the spectrum is twice or half of the law, or which the points limit.
+    pub(crate) resolution_wavelength: Option<f64>,
+    /// What limits the resolution.
+    pub(crate) resolution_reason: Option<&'static str>,
+}
+
+impl EndsRow {
+    fn new(fit: &HurstFit, side: f64) -> Self {
+        let reason = |limit| match limit {
+            Limit::Noise => "noise",
+            Limit::Blunt => "tip or lens",
+            Limit::Grid => "spacing of the points",
+        };
+        Self {
+            hurst: Some(fit.hurst),
+            hurst_error: Some(fit.hurst_error),
+            roll_off_wavelength: fit.roll_off.map(|waves| side / waves),
+            cut_off_wavelength: fit.cut_off.map(|waves| side / waves),
+            resolution_wavelength: fit.resolution.map(|(waves, _)| side / waves),
+            resolution_reason: fit.resolution.map(|(_, limit)| reason(limit)),
+        }
+    }
 }
 
 impl HurstRow {
@@ -177,6 +215,7 @@ impl SurfaceRecord {
         let under_window = if windowed { Cow::Owned(rc_heights::hann(heights)) } else { Cow::Borrowed(heights) };
         let rings = radial_spectrum(&under_window);
         let measured = Self::of_measured(heights, side);
+        let fit = fit_hurst(&rings, &Measured::on(heights.grid(), windowed));
         Self {
             rms_height: moments.rms_height * side,
             rms_slope: moments.rms_slope,
@@ -184,7 +223,8 @@ impl SurfaceRecord {
             nayak: Some(moments.nayak),
             border_step: Some(border.ratio()),
             windowed,
-            hurst_fit: fit_hurst(&rings).map(|fit| HurstRow::new(fit, side)),
+            ends: fit.map_or_else(EndsRow::default, |fit| EndsRow::new(&fit, side)),
+            hurst_fit: fit.map(|fit| HurstRow::new(fit, side)),
             spectrum: rings.iter().map(|ring| SpectrumRow::new(ring, side)).collect(),
             areal: measured.areal.clone().with_texture(heights, &under_window, side),
             ..measured
@@ -221,6 +261,7 @@ impl SurfaceRecord {
             areal: ArealRow::of(heights, side, statistics.mean),
             border_step: None,
             windowed: false,
+            ends: EndsRow::default(),
             hurst_fit: None,
             spectrum: Vec::new(),
             treatments: Vec::new(),

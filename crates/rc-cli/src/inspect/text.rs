@@ -5,7 +5,7 @@ use rc_core::quantity::{digits, engineering};
 use rc_heights::ChannelInfo;
 use rc_solver::PressureStatistics;
 
-use super::record::{SpectrumRow, SurfaceRecord, TreatmentRow};
+use super::record::{EndsRow, SpectrumRow, SurfaceRecord, TreatmentRow};
 use crate::text::{aligned, cell};
 
 /// Maximum number of channels that are listed.
@@ -146,8 +146,9 @@ fn spectrum_lines(s: &SurfaceRecord) -> String {
     let law = match &s.hurst_fit {
         None => "no part of the spectrum follows a power law over a factor of 4 in wave number".to_owned(),
         Some(fit) => format!(
-            "H = {} from {} to {} waves per cell ({} to {}), C(q) = {} m^{} q^{}, rms deviation of ln C {}",
+            "H = {} ± {} from {} to {} waves per cell ({} to {}), C(q) = {} m^{} q^{}, rms deviation of ln C {}",
             digits(fit.hurst, 3),
+            digits(s.ends.hurst_error.unwrap_or_default(), 1),
             digits(fit.from_waves, 3),
             digits(fit.to_waves, 3),
             engineering(s.cell / fit.from_waves, "m"),
@@ -158,7 +159,22 @@ fn spectrum_lines(s: &SurfaceRecord) -> String {
             digits(fit.deviation, 2)
         ),
     };
-    "\n".to_owned() + &aligned(&[("border step", border), ("Hurst exponent", law)])
+    let mut lines = vec![("border step", border), ("Hurst exponent", law)];
+    if s.hurst_fit.is_some() {
+        lines.extend(end_lines(&s.ends));
+    }
+    "\n".to_owned() + &aligned(&lines)
+}
+
+/// Names and values of the ends of the power law.
+fn end_lines(ends: &EndsRow) -> [(&'static str, String); 3] {
+    let shown = |wavelength: Option<f64>| wavelength.map_or_else(|| "not seen".to_owned(), |at| engineering(at, "m"));
+    let reason = ends.resolution_reason.map_or_else(String::new, |reason| format!(": {reason}"));
+    [
+        ("roll-off", shown(ends.roll_off_wavelength)),
+        ("cut-off", shown(ends.cut_off_wavelength)),
+        ("resolution", shown(ends.resolution_wavelength) + &reason),
+    ]
 }
 
 /// Statistics of a pressure field, with its distribution.

@@ -24,7 +24,7 @@ struct Estimate {
     control_value: f64,
     mean: f64,
     standard_error: f64,
-    grid_error: f64,
+    grid_error: Option<f64>,
     relative_error: Option<f64>,
     wanted_error: f64,
     cost: f64,
@@ -136,7 +136,7 @@ impl Estimate {
 
     /// Error of statistics and grid together.
     fn error(&self) -> f64 {
-        self.standard_error.hypot(self.grid_error)
+        self.standard_error.hypot(self.grid_error.unwrap_or(0.0))
     }
 
     fn realisations(&self) -> usize {
@@ -159,7 +159,7 @@ impl Estimate {
             self.text(),
             part(self.error()),
             part(self.standard_error),
-            part(self.grid_error),
+            self.grid_error.map_or_else(|| "one grid".to_owned(), part),
             self.realisations().to_string(),
             self.status.replace('_', " "),
         ]
@@ -242,9 +242,11 @@ fn command(settings: &Value, mean: &Estimate) -> Command {
         |values: &Value| values.as_array().into_iter().flatten().map(Value::to_string).collect::<Vec<_>>().join(",");
     let surface = &settings["surfaces"][0];
     let (ensemble, control) = (&settings["ensemble"], settings["control"].as_str().unwrap_or("pressure"));
-    let grid = ensemble["grids"].as_array().and_then(|grids| grids.last()).map_or_else(String::new, Value::to_string);
+    // On one grid, it is among the keys of the surface.
+    let grids = ensemble["grids"].as_array().filter(|grids| grids.len() > 1);
+    let grid = grids.and_then(|grids| grids.last()).map_or_else(String::new, |grid| format!(" --grid {grid}"));
     let text = format!(
-        "rc sweep{}{} --{control}s {} --seed {} --grid {grid} --error-of-mean {} --mean-of {} --out again",
+        "rc sweep{}{} --{control}s {} --seed {}{grid} --error-of-mean {} --mean-of {} --out again",
         flags(&surface["surface"]),
         flags(&surface["contact"]),
         list(&surface["loads"]),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use rc_core::{Field, Grid};
 use rc_fractal::{Twin, TwinParams};
-use rc_heights::{BorderStep, HeightMap, hann};
+use rc_heights::{BorderStep, HeightMap, ReadParams, hann};
 
 use super::heights::{self, CellOfMap};
 use super::keys::SurfaceKeys;
@@ -30,14 +30,30 @@ pub(crate) fn file_of(like: &Path) -> PathBuf {
     if like.is_dir() { like.join(HEIGHTS_FILE) } else { like.to_owned() }
 }
 
+/// Reads the map that `like` names, which may be a profile: a map of one row.
+///
+/// # Errors
+/// [`CliError::Input`] when it cannot be read.
+pub(crate) fn read_map(like: &Path, keys: &SurfaceKeys) -> Result<HeightMap, CliError> {
+    let params = ReadParams { row_is_map: true, ..keys.read_params() };
+    heights::read(&file_of(like), &params, keys.scales())
+}
+
 impl Reference {
     /// Reads the map that `like` names.
     ///
     /// # Errors
     /// [`CliError::Input`] when it cannot be read, has missing points, is flat, or has no size.
     pub(crate) fn read(like: &Path, keys: &SurfaceKeys) -> Result<Self, CliError> {
+        Self::of(like, read_map(like, keys)?, keys)
+    }
+
+    /// The `map` that was read from `like`.
+    ///
+    /// # Errors
+    /// As [`Reference::read`].
+    pub(crate) fn of(like: &Path, mut map: HeightMap, keys: &SurfaceKeys) -> Result<Self, CliError> {
         let path = file_of(like);
-        let mut map = heights::read(&path, &keys.read_params(), keys.scales())?;
         if map.sides.is_none() && like.is_dir() {
             let scene = file::read(&like.join(SCENE_FILE))?.surface;
             map.sides = scene.cell.map(|cell| [cell, scene.cell_y.unwrap_or(cell)]);

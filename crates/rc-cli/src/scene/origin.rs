@@ -7,6 +7,23 @@ use serde::Deserialize;
 
 use crate::files::beside;
 
+/// What made a surface of a spectrum, before the number of the seed.
+const OF_TABLE: &str = "surface with this spectrum, seed ";
+const OF_PROFILE: &str = "surface with the spectrum of this profile, seed ";
+
+/// The origin of a realisation of the spectrum in `path`, which may be a profile.
+///
+/// A table in a folder of rc has the file in the record beside it, and its treatments before the realisation.
+pub(crate) fn of_spectrum(path: &Path, channel: Option<&str>, (seed, is_profile): (u64, bool)) -> MapOrigin {
+    let made_by = |origin: &MapOrigin, how: &str| origin.treatments.last().is_some_and(|made| made.starts_with(how));
+    let is_table = |origin: &MapOrigin| made_by(origin, OF_TABLE) || made_by(origin, OF_PROFILE);
+    let mut origin = Some(of(path, channel)).filter(is_table).unwrap_or_else(|| of_file(path, channel));
+    let of_profile = is_profile || made_by(&origin, OF_PROFILE);
+    origin.treatments.pop();
+    origin.treatments.push(format!("{}{seed}", if of_profile { OF_PROFILE } else { OF_TABLE }));
+    origin
+}
+
 /// The origin of the map at `path`, of which `channel` is read.
 ///
 /// A map in a folder of rc has the origin in the record beside it.
@@ -15,7 +32,9 @@ pub(crate) fn of(path: &Path, channel: Option<&str>) -> MapOrigin {
     struct Record {
         source: MapOrigin,
     }
-    let of_file =
-        || MapOrigin { file: path.display().to_string(), channel: channel.map(str::to_owned), treatments: Vec::new() };
-    beside::records(path).next().map_or_else(of_file, |Record { source }| source)
+    beside::records(path).next().map_or_else(|| of_file(path, channel), |Record { source }| source)
+}
+
+fn of_file(path: &Path, channel: Option<&str>) -> MapOrigin {
+    MapOrigin { file: path.display().to_string(), channel: channel.map(str::to_owned), treatments: Vec::new() }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use rc_fractal::{LEAST_POINTS, MAX_WAVES, spectrum_of_profile};
-use rc_heights::{Layout, LengthUnit, pairs};
+use rc_heights::{HeightMap, Layout, LengthUnit, ReadNote, pairs};
 
 use super::keys::SurfaceKeys;
 use crate::error::CliError;
@@ -32,18 +32,9 @@ impl Profile {
         }
         let Ok(points) = pairs::read_within(path, keys.read_params().max_bytes, "x and z") else { return Ok(None) };
         let fail = |message: std::fmt::Arguments<'_>| CliError::in_file(path, message);
-        if points.len() < LEAST_POINTS {
-            return Err(fail(format_args!("a profile of {} points; give at least {LEAST_POINTS}", points.len())));
-        }
+        check_heights(path, points.iter().map(|point| point[1]))?;
         let spacing = (points[points.len() - 1][0] - points[0][0]) / (points.len() - 1) as f64;
         let is_equal = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0] - spacing).abs() <= EQUAL * spacing;
-        if let Some(i) = points.iter().position(|point| !point[1].is_finite()) {
-            return Err(fail(format_args!(
-                "point {} of the profile is {}; heights must be finite",
-                i + 1,
-                points[i][1]
-            )));
-        }
         if !(spacing > 0.0 && points.windows(2).all(is_equal)) {
             return Err(fail(format_args!(
                 "the points of the profile are not equally spaced along x; give lines x z with equal steps of x"
@@ -57,6 +48,27 @@ impl Profile {
             spacing: spacing * unit,
             is_assumed: keys.unit.is_none(),
         }))
+    }
+
+    /// The profile in a map of one row, in metres. `None` for any other map.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when points are too few or missing, or when their distance is not known.
+    pub(crate) fn of_map(path: &Path, map: &HeightMap) -> Result<Option<Self>, CliError> {
+        let grid = map.heights.grid();
+        if grid.nx().min(grid.ny()) > 1 {
+            return Ok(None);
+        }
+        let heights = map.heights.values().to_vec();
+        check_heights(path, heights.iter().copied())?;
+        let Some(sides) = map.sides else {
+            let message = "a profile whose points have no distance; give a text of lines x z";
+            return Err(CliError::in_file(path, message));
+        };
+        let side = if grid.ny() == 1 { sides[0] } else { sides[1] };
+        let spacing = side / heights.len() as f64;
+        let is_assumed = map.notes.iter().any(ReadNote::is_assumption);
+        Ok(Some(Self { heights, spacing, is_assumed }))
     }
 
     /// Length of the profile (m).
@@ -78,5 +90,18 @@ impl Profile {
             }
         }
         table
+    }
+}
+
+/// Refuses profiles of too few points, and of points that are not finite.
+fn check_heights(path: &Path, heights: impl ExactSizeIterator<Item = f64>) -> Result<(), CliError> {
+    let fail = |message: std::fmt::Arguments<'_>| Err(CliError::in_file(path, message));
+    let n = heights.len();
+    if n < LEAST_POINTS {
+        return fail(format_args!("a profile of {n} points; give at least {LEAST_POINTS}"));
+    }
+    match heights.enumerate().find(|(_, height)| !height.is_finite()) {
+        Some((i, height)) => fail(format_args!("point {} of the profile is {height}; heights must be finite", i + 1)),
+        None => Ok(()),
     }
 }

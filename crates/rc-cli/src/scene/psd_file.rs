@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use rc_fractal::{Amplitudes, Moments, SpectrumTable, Surface};
+use rc_core::quantity::engineering;
+use rc_fractal::{Amplitudes, Moments, SpectrumTable, Surface, TableError};
 use rc_heights::pairs;
 
 use super::values::PsdConvention;
@@ -38,9 +39,11 @@ impl PsdFile {
     /// What is wrong with it.
     pub(super) fn of_rows(rows: Vec<[f64; 2]>, convention: PsdConvention, side: f64) -> Result<Self, String> {
         let in_cell = |[q, c]: [f64; 2]| [q * side / TAU, c / convention.factor() / side.powi(4)];
-        let table =
-            SpectrumTable::new(rows.iter().copied().map(in_cell).collect()).map_err(|cause| cause.to_string())?;
-        Ok(Self { rows, table })
+        let table = SpectrumTable::new(rows.iter().copied().map(in_cell).collect());
+        match table {
+            Ok(table) => Ok(Self { rows, table }),
+            Err(cause) => Err(in_units_of_rows(cause, &rows)),
+        }
     }
 
     /// N of the surface, in waves per cell.
@@ -62,5 +65,24 @@ impl PsdFile {
             )));
         }
         Ok(WaveFile::of_spectrum(self.rows.clone(), surface))
+    }
+}
+
+/// What is wrong with a table, in the units of its rows.
+fn in_units_of_rows(cause: TableError, rows: &[[f64; 2]]) -> String {
+    match cause {
+        TableError::Wavenumber { row, .. } => TableError::Wavenumber { row, value: rows[row - 1][0] }.to_string(),
+        TableError::Density { row, .. } => TableError::Density { row, value: rows[row - 1][1] }.to_string(),
+        TableError::NoWaves { .. } if rows.iter().all(|row| row[1] == 0.0) => {
+            "the spectrum is 0 in all rows; it must be above 0 for the waves of the surface".to_owned()
+        }
+        TableError::NoWaves { .. } => {
+            let [longest, shortest] = [rows[0], rows[rows.len() - 1]].map(|row| engineering(TAU / row[0], "m"));
+            format!(
+                "the cell has no wave as in the table, from {longest} to {shortest}; check that its q is in rad/m, or \
+                 take another cell"
+            )
+        }
+        other => other.to_string(),
     }
 }

@@ -220,17 +220,22 @@ impl SurfaceSetup {
             Source::Twin { like, of_map, heights, seed, grid } => {
                 let held = self.reference.lock().unwrap_or_else(PoisonError::into_inner).take();
                 let reference = held.map_or_else(|| Reference::read(like, of_map), Ok)?;
+                let tilted = warnings::surface::tilted(&reference.map);
                 let twin = reference.twin((*grid, self.cell.sides()), *seed, *heights)?;
                 let mut surface = self.of_map(like, twin, None)?;
+                surface.warnings.extend(tilted);
                 surface.notes.push(like::note(like, *seed, *heights));
                 let mut origin = origin::of(&like::file_of(like), of_map.channel.as_deref());
                 origin.treatments.push(format!("twin, seed {seed}"));
                 surface.origin = Some(origin);
                 Ok(surface)
             }
-            Source::Spectrum { table, amplitudes, seed, grid, .. } => {
+            Source::Spectrum { path, table, amplitudes, seed, grid } => {
                 let waves = Arc::new(table.realisation(*amplitudes, *seed)?);
-                self.generated(Some((Arc::clone(waves.surface()), Some(waves))), *grid)
+                let mut surface = self.generated(Some((Arc::clone(waves.surface()), Some(waves))), *grid)?;
+                let channel = self.keys.channel.as_deref();
+                surface.origin = Some(origin::of_spectrum(path, channel, (*seed, self.keys.like.is_some())));
+                Ok(surface)
             }
             Source::Shape { grid } => self.generated(None, *grid),
         }

@@ -10,12 +10,10 @@ use rc_heights::{LengthUnit, Scales, pairs};
 
 use super::keys::SurfaceKeys;
 use crate::error::CliError;
+use crate::files::names::PSD_FILE;
 
 /// Name of a file of coefficients in a result folder.
 pub(crate) const WAVES_FILE: &str = "spectrum.txt";
-
-/// Name of the table of a spectrum in a result folder.
-pub(crate) const PSD_FILE: &str = "psd.csv";
 
 /// The content of a file and its surface.
 ///

@@ -5,6 +5,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use rc_core::Grid;
 use rc_core::quantity::{count, digits};
 use rc_sweep::files::{self, write_synced};
 use rc_sweep::memory::Budget;
@@ -100,55 +101,92 @@ fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
     }
 }
 
-/// The plan of the realisations on several grids.
+/// The plan of the realisations.
 ///
-/// The grids are that of the scene, and those from halving it as long as they resolve the waves.
+/// Waves are solved on the grid of the scene, and on those from halving it as long as they resolve the waves. A twin has
+/// the grid of its map, and its short waves. On half of the grid it would be another surface.
 fn plan(surface: &SweptSurface, control: ControlKind) -> Result<EnsemblePlan, CliError> {
-    let Source::Random { spectrum, grid } = &surface.setup.source else {
-        return Err(CliError::input("error_of_mean: a height map has no other realisations; omit it"));
+    let no_other =
+        |what: &str| CliError::input(format_args!("error_of_mean: a {what} has no other realisations; omit it"));
+    let (sides, first_seed) = match &surface.setup.source {
+        Source::Random { spectrum, grid } => (several(*grid, spectrum.waves)?, spectrum.seed),
+        Source::Spectrum { table, grid, seed, .. } => (sides(*grid, table.waves()), *seed),
+        Source::Twin { grid, seed, .. } => (vec![grid.nx().max(grid.ny())], *seed),
+        Source::File { .. } => return Err(no_other("height map")),
+        Source::Waves { .. } => return Err(no_other("file of waves")),
+        Source::Shape { .. } => return Err(no_other("shape")),
     };
     let mut planned = surface.planned()?;
-    if grid.nx() != grid.ny() {
-        return Err(CliError::input(format_args!("grid: a mean needs square grids, not {grid}")));
-    }
-    let coarsest = COARSEST[1].max(COARSEST[0] * spectrum.waves);
-    let halvings = (0..).map_while(|i| (grid.nx() % (1 << i) == 0 && i < 16).then(|| grid.nx() >> i));
-    let mut sides: Vec<usize> = halvings.take_while(|&side| side >= coarsest).collect();
-    sides.reverse();
-    if sides.len() < 2 {
-        return Err(CliError::input(format_args!(
-            "grid: the mean needs an even number of at least {} elements per side, not {grid}",
-            2 * coarsest
-        )));
-    }
     // Seed and grid of the scene do not apply to all rows.
     if let Some(keys) = planned.surface.as_object_mut() {
         keys.remove("seed");
-        keys.remove("grid");
+        if sides.len() > 1 {
+            keys.remove("grid");
+        }
     }
-    let plan = EnsemblePlan { control, surface: planned, sides, first_seed: spectrum.seed };
+    let plan = EnsemblePlan { control, surface: planned, sides, first_seed };
     match plan.greatest_seed().and_then(|seed| i64::try_from(seed).ok()) {
         Some(_) => Ok(plan),
-        None => Err(CliError::input(format_args!("seed: {} leaves no room for those that follow it", spectrum.seed))),
+        None => Err(CliError::input(format_args!("seed: {first_seed} leaves no room for those that follow it"))),
     }
+}
+
+/// The sides of `grid` and of the grids from halving it that resolve `waves`, coarsest first.
+///
+/// They are the longer side alone if the grid is no square, or if its half is too coarse.
+fn sides(grid: Grid, waves: usize) -> Vec<usize> {
+    if grid.nx() != grid.ny() {
+        return vec![grid.nx().max(grid.ny())];
+    }
+    let halvings = (1..16).map_while(|i| grid.nx().is_multiple_of(1 << i).then(|| grid.nx() >> i));
+    let mut sides: Vec<usize> = halvings.take_while(|&side| side >= coarsest(waves)).collect();
+    sides.insert(0, grid.nx());
+    sides.reverse();
+    sides
+}
+
+/// The sides of several grids.
+///
+/// # Errors
+/// [`CliError::Input`] when there is only one.
+fn several(grid: Grid, waves: usize) -> Result<Vec<usize>, CliError> {
+    if grid.nx() != grid.ny() {
+        return Err(CliError::input(format_args!("grid: a mean needs square grids, not {grid}")));
+    }
+    let sides = sides(grid, waves);
+    if sides.len() < 2 {
+        return Err(CliError::input(format_args!(
+            "grid: the mean needs an even number of at least {} elements per side, not {grid}",
+            2 * coarsest(waves)
+        )));
+    }
+    Ok(sides)
+}
+
+/// Elements per side of the coarsest grid for these waves.
+fn coarsest(waves: usize) -> usize {
+    COARSEST[1].max(COARSEST[0] * waves)
 }
 
 /// A mean as aligned lines of text.
 fn lines(mean: &EnsembleMean) -> String {
     let percent = digits(100.0 * mean.relative_error, 2);
-    let value = text::with_error(mean.mean, mean.standard_error.hypot(mean.grid_error));
+    let value = text::with_error(mean.mean, mean.standard_error.hypot(mean.grid_error.unwrap_or(0.0)));
     let state = if mean.status == "converged" { "" } else { "NOT CONVERGED: " };
     let unit = if mean.control == "pressure" { "Pa" } else { "m" };
+    let grid = mean.grid_error.map_or_else(|| "one grid".to_owned(), |error| format!("grid {}", digits(error, 2)));
     let head = format!(
-        "{state}mean {} at {} {} {unit}: {value} ({percent} %; statistics {}, grid {})\n",
+        "{state}mean {} at {} {} {unit}: {value} ({percent} %; statistics {}, {grid})\n",
         mean.mean_of,
         mean.control,
         digits(mean.control_value, 6),
-        digits(mean.standard_error, 2),
-        digits(mean.grid_error, 2)
+        digits(mean.standard_error, 2)
     );
     let names = ["grid", "realisations", "mean", "std deviation", "cost of each"].map(str::to_owned);
     let levels: String = [names].into_iter().chain(mean.levels.iter().map(cells)).map(columns).collect();
+    if mean.grid_error.is_none() {
+        return head + &levels;
+    }
     let part = digits(mean.cost / mean.cost_of_plain_mean, 2);
     format!(
         "{head}{levels}  cost (elements times applications of the operator): {part} times the estimated cost on the finest grid alone\n"

@@ -96,7 +96,7 @@ pub(super) fn check_means(means: &[EnsembleMean]) -> Result<(), CliError> {
     let percent = |value: f64| format!("{} %", digits(100.0 * value, 2));
     let reached = format!("error_of_mean: {} at {} {:e}", mean.mean_of, mean.control, mean.control_value);
     Err(CliError::NotConverged(match (mean.not_converged, mean.levels.last()) {
-        (0, Some(finest)) if mean.grid_error > mean.standard_error => format!(
+        (0, Some(finest)) if mean.grid_error.is_some_and(|error| error > mean.standard_error) => format!(
             "{reached} has an error of {} on grid {}, but {} was wanted; give a finer --grid",
             percent(mean.relative_error),
             finest.grid,

@@ -7,6 +7,7 @@ mod interrupt;
 mod list;
 mod map_mark;
 mod mean;
+mod means;
 mod merge;
 mod messages;
 mod part;
@@ -91,7 +92,9 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>, (shard, folder): (Shard, &Pa
             };
             let threads = count(threads, "thread");
             let sealing = sealing.map_or_else(String::new, |sealing| sealing.line() + "\n");
-            terminal::print(&format!("{rows}{before} in {seconds} s, {threads}\n{sealing}\nwritten to {table}\n"))?;
+            let means = means::over_seeds(kept.rows());
+            let head = format!("{means}{rows}{before} in {seconds} s, {threads}\n{sealing}");
+            terminal::print(&format!("{head}\nwritten to {table}\n"))?;
         }
     }
     solved.verdict(kept.rows(), n_rows, &surfaces.run)

@@ -21,8 +21,11 @@ pub(super) struct Realisations<'a> {
 
 impl RowScenes<Realisation> for Realisations<'_> {
     fn load(&self, row: &Realisation) -> Result<LoadedSurface, CliError> {
-        let grid = Some(GridSpec::square(row.side));
-        let keys = SurfaceKeys { seed: Some(row.seed), grid, ..self.surface.setup.keys.clone() };
+        let keys = self.surface.setup.keys.clone();
+        // A surface on one grid may be a rectangle.
+        let own = keys.grid.filter(|grid| grid.nx.max(grid.ny) == row.side);
+        let grid = own.or(Some(GridSpec::square(row.side)));
+        let keys = SurfaceKeys { seed: Some(row.seed), grid, ..keys };
         resolve::surface(keys)?.load()
     }
 

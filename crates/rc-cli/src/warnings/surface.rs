@@ -6,10 +6,10 @@ use rc_core::quantity::{count, digits, engineering};
 use rc_core::{Field, Grid, PeriodicCell};
 use rc_fractal::{Texture, height_and_slope_of_grid};
 use rc_heights::suspicion::{Counter, Suspicions};
-use rc_heights::{BorderStep, HeightMap, Periodic, Treatment, hann};
+use rc_heights::{BorderStep, Effect, HeightMap, Level, Periodic, Treatment, hann};
 use rc_sweep::Warning;
 use rc_sweep::WarningCode::{
-    Assumed, Border, Columns, Counter as CounterCode, Marks, Mirror, Missing, Slope, Spikes, Units,
+    Assumed, Border, Columns, Counter as CounterCode, Marks, Mirror, Missing, Slope, Spikes, Tilt, Units,
 };
 
 use crate::files::beside;
@@ -39,6 +39,9 @@ const SMALL_SLOPE: f64 = 0.3;
 /// Contact areas are known to a percent or so. Filled points follow their neighbours, so that only a part of them is
 /// wrong.
 const FEW_FILLED: f64 = 0.02;
+
+/// Part of the mean square height above which a tilt is not that of long waves of the surface.
+const TILTED: f64 = 0.5;
 
 /// Range of heights of a sum of many waves, in rms heights.
 const RANGE_OF_WAVES: f64 = 6.0;
@@ -138,6 +141,21 @@ pub(crate) fn of_map(map: &HeightMap) -> Vec<Warning> {
         found.push(Warning::new(Spikes, text));
     }
     found
+}
+
+/// A doubt about a map that is tilted, of which a twin is made.
+pub(crate) fn tilted(map: &HeightMap) -> Option<Warning> {
+    let before = Effect::of(map, "").rms_height;
+    let (_, effects) = rc_heights::apply(map.clone(), &[Treatment::Level(Level::Plane)]).ok()?;
+    let part = 1.0 - (effects.last()?.rms_height / before).powi(2);
+    let text = || {
+        format!(
+            "{} % of the mean square height of the map are a tilt, which its twin has as heights and as long waves; \
+             level the map first (rc prepare)",
+            digits(100.0 * part, 2)
+        )
+    };
+    (part > TILTED).then(|| Warning::new(Tilt, text()))
 }
 
 /// One doubt about everything that was assumed; none if nothing was.

@@ -174,6 +174,98 @@ fn the_source_of_a_twin_is_its_map() {
     assert_eq!(treatments, &serde_json::json!(["twin, seed 4", "twin, seed 1"]));
 }
 
+/// A Digital Surf profile in micrometres, with this spacing.
+fn sur(heights: &[f64], spacing: f32) -> Vec<u8> {
+    let mut bytes = vec![0; 512];
+    let n = i32::try_from(heights.len()).expect("a length");
+    let mut put = |at: usize, field: &[u8]| bytes[at..at + field.len()].copy_from_slice(field);
+    put(0, b"DIGITAL SURF");
+    put(18, &1_u16.to_le_bytes());
+    put(98, &32_u16.to_le_bytes());
+    for (at, count) in [(108, n), (112, 1), (116, n)] {
+        put(at, &count.to_le_bytes());
+    }
+    put(120, &spacing.to_le_bytes());
+    put(128, &1e-6_f32.to_le_bytes());
+    put(180, b"um");
+    put(212, b"um");
+    bytes.extend(heights.iter().flat_map(|height| ((height * 1e6).round() as i32).to_le_bytes()));
+    bytes
+}
+
+/// A NetCDF file with vectors x and heights (µm), as SurfaceTopography writes line scans.
+fn netcdf(heights: &[f64], spacing: f64) -> Vec<u8> {
+    let word = |n: usize| u32::try_from(n).expect("a length").to_be_bytes().to_vec();
+    let name =
+        |text: &str| [word(text.len()), text.bytes().chain([0; 4]).take(text.len().div_ceil(4) * 4).collect()].concat();
+    let unit = || [word(12), word(1), name("unit"), word(2), name("um")].concat();
+    let n = heights.len();
+    let header = |start: usize| {
+        let variable =
+            |text: &str, at: usize| [name(text), word(1), word(0), unit(), word(6), word(8 * n), word(at)].concat();
+        let dimension = [word(10), word(1), name("x"), word(n), word(0), word(0)].concat();
+        let both = [variable("x", start), variable("heights", start + 8 * n)].concat();
+        [b"CDF\x01".to_vec(), word(0), dimension, word(11), word(2), both].concat()
+    };
+    let places = (0..n).map(|i| spacing * i as f64);
+    let values = places.chain(heights.iter().copied()).flat_map(f64::to_be_bytes).collect();
+    [header(header(0).len()), values].concat()
+}
+
+/// A profile of an instrument gives the surface of its text, whose source is the profile.
+#[test]
+fn profiles_of_instruments_are_like_texts_and_are_the_source() {
+    let place = Place::new();
+    let heights: Vec<f64> = (0..200).map(|i| (0.37 * f64::from(i * i)).sin() + 0.1 * f64::from(i % 7)).collect();
+    place.write(
+        "profile.txt",
+        heights.iter().enumerate().map(|(i, z)| format!("{} {z}\n", 0.5 * i as f64)).collect::<Vec<_>>().concat(),
+    );
+    place.write("profile.sur", sur(&heights, 0.5));
+    place.write("profile.nc", netcdf(&heights, 0.5));
+    let mut rms = Vec::new();
+    for (file, unit) in [("profile.txt", &["--unit", "um"][..]), ("profile.sur", &[]), ("profile.nc", &[])] {
+        let args = ["surface", "--like", file, "--grid", "64", "--seed", "3", "--quiet", "--out", "s"];
+        assert_solved(&place.run(&[&args[..], unit].concat()));
+        let record = place.json("s/surface.json");
+        let treatments = ["surface with the spectrum of this profile, seed 3"];
+        assert_eq!(record["source"], serde_json::json!({ "file": file, "channel": null, "treatments": treatments }));
+        assert_close("cell", record["cell"].as_f64().expect("a length"), 1e-4, 1e-9);
+        rms.push(record["rms_height"].as_f64().expect("a length"));
+    }
+    assert_close("rms height of .sur", rms[1], rms[0], 1e-5);
+    assert_close("rms height of .nc", rms[2], rms[0], 1e-9);
+    // The folder has the table only, and knows where it is from.
+    assert_solved(
+        &place.run(
+            &[&["solve", "s", "--seed", "4", "--pressure", "1e5", "--quiet", "--out", "r"][..], &MATERIAL].concat(),
+        ),
+    );
+    let source = &place.json("r/summary.json")["source"];
+    assert_eq!(source["file"], "profile.nc");
+    assert_eq!(source["treatments"], serde_json::json!(["surface with the spectrum of this profile, seed 4"]));
+    assert_refused(&place.run(&["surface", "--heights", "profile.sur"]), "a profile, not a map");
+    place.write("short.sur", sur(&heights[..9], 0.5));
+    assert_refused(&place.run(&["surface", "--like", "short.sur"]), "a profile of 9 points");
+}
+
+#[test]
+fn the_tilt_of_a_map_is_told_with_its_twin() {
+    let place = Place::new();
+    let tilted = |tilt: f64| {
+        let heights = values(&map()).into_iter().zip(0..).map(move |(height, i)| height + tilt * f64::from(i % 48));
+        npy("<f8", false, "(40, 48)", &f8(&heights.map(|height| height as f32).collect::<Vec<f32>>()))
+    };
+    for (tilt, expected) in [(0.0, false), (1e-6, true)] {
+        place.write("tilted.npy", tilted(tilt));
+        assert_solved(
+            &place.run(&[&["surface", "--like", "tilted.npy", "--quiet", "--out", "twin"][..], &CELL].concat()),
+        );
+        let record = place.json("twin/surface.json");
+        assert_eq!(codes(&record).contains(&"tilt".to_owned()), expected, "{}", record["warnings"]);
+    }
+}
+
 #[test]
 fn sweeps_take_seeds_of_twins_and_of_spectra() {
     let place = Place::new();
@@ -194,16 +286,20 @@ fn what_cannot_be_a_surface_is_refused_in_one_line() {
     let place = Place::new();
     place.write("psd.txt", psd(1.0));
     place.write("falling.txt", "2000 1e-18\n1000 1e-18\n");
+    place.write("negative.txt", "2000 1e-18\n3000 -1e-18\n");
+    place.write("empty.txt", "2000 0\n3000 0\n");
     place.write("map.npy", map());
     place.write("short.txt", "0 1\n1 2\n");
     place.write("uneven.txt", lines(20, |i| format!("{} 1e-6\n", i * i)));
-    let cases: [(&[&str], &str); 11] = [
+    let cases: [(&[&str], &str); 13] = [
         (&["--psd", "psd.txt"], "psd: a table of a spectrum needs cell (m) too"),
         (&["--psd", "psd.txt", "--cell", "0.01", "--waves", "8"], "psd defines the surface"),
         (&["--psd", "psd.txt", "--cell", "0.01", "--grid", "16"], "at least 33 per side"),
         (&["--psd", "psd.txt", "--cell", "1e-4"], "take another cell"),
         (&["--psd", "psd.txt", "--like", "map.npy"], "psd and like both define the surface"),
-        (&["--psd", "falling.txt", "--cell", "0.01"], "falling.txt: row 2: the wavenumber"),
+        (&["--psd", "falling.txt", "--cell", "0.01"], "falling.txt: row 2: the wavenumber 1e3 must"),
+        (&["--psd", "negative.txt", "--cell", "0.01"], "row 2: the spectrum is -1e-18;"),
+        (&["--psd", "empty.txt", "--cell", "0.01"], "the spectrum is 0 in all rows"),
         (&["--psd-convention", "fourier"], "give --psd FILE"),
         (&["--heights-like", "map"], "give --like FILE"),
         (&["--like", "map.npy"], "needs cell (m) too"),

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
+use crate::solve::assert_close;
 use crate::support::{Place, assert_refused, assert_solved, bumps, f8, npy, text};
 use crate::sweep::table;
 
@@ -127,4 +128,44 @@ fn an_error_that_no_grid_gives_is_said_and_marked() {
     assert_eq!(output.status.code(), Some(3), "{message}");
     assert!(message.contains("on grid 128") && message.contains("give a finer --grid"), "{message}");
     assert_eq!(place.json("m/mean.json")[0]["status"], "not_converged");
+}
+
+/// Each seed of a measured surface is a realisation. Twins have one grid, which may be a rectangle.
+#[test]
+fn spectra_and_twins_have_means() {
+    let place = Place::new();
+    place.write("psd.csv", "628,1e-19\n5030,1e-22\n");
+    place.write("map.npy", npy("<f8", false, "(48, 64)", &f8(&bumps(64)[..48 * 64])));
+    let load = ["--cell", "0.01", "--e-star", "5e8", "--pressure", "2e5", "--seed", "7", "--quiet", "--out"];
+    let run = |folder: &str, surface: &[&str], error: &str| {
+        let mean = ["--error-of-mean", error];
+        assert_solved(&place.run(&[&["sweep"], surface, &load, &[folder], &mean].concat()));
+        place.json(&format!("{folder}/mean.json"))[0].clone()
+    };
+    let of_table = run("table", &["--psd", "psd.csv", "--grid", "128"], "20%");
+    assert_eq!(of_table["levels"][1]["grid"], 128, "{of_table}");
+    assert!(of_table["grid_error"].is_number(), "{of_table}");
+    for (folder, surface, grid) in [
+        ("coarse", &["--psd", "psd.csv", "--grid", "32"][..], 32),
+        ("twin", &["--like", "map.npy", "--cell-y", "0.0075"], 64),
+    ] {
+        let found = run(folder, surface, "20%");
+        assert_eq!((&found["levels"][0]["grid"], &found["grid_error"]), (&grid.into(), &serde_json::Value::Null));
+        // The mean is that of a sweep over the same seeds.
+        let n = found["levels"][0]["realisations"].as_u64().expect("a number");
+        let seeds = format!("7..{}", 6 + n);
+        let plain: Vec<&str> = load.iter().copied().filter(|word| !["--seed", "7"].contains(word)).collect();
+        let args = [&["sweep"], surface, &plain, &["plain", "--seeds", &seeds, "--json"]].concat();
+        let output = place.run(&args);
+        assert_solved(&output);
+        let rows: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let areas: Vec<f64> =
+            rows.as_array().expect("rows").iter().map(|row| row["area_fraction"].as_f64().expect("an area")).collect();
+        let mean = areas.iter().sum::<f64>() / areas.len() as f64;
+        assert_close("mean area", found["mean"].as_f64().expect("a mean"), mean, 1e-12);
+        assert_solved(&place.run(&["report", folder]));
+        std::fs::remove_dir_all(place.path("plain")).expect("a folder");
+    }
+    let text = String::from_utf8(place.bytes("twin/report.html")).expect("text");
+    assert!(text.contains("one grid"), "the page has no grid error to show");
 }

@@ -1,5 +1,6 @@
 //! Tests of the claims of `rc-fractal`, from outside.
 
+mod ends;
 mod moments;
 mod parameters;
 mod profile;

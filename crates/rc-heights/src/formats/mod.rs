@@ -32,6 +32,8 @@ mod nanoscope;
 pub mod nc_writer;
 mod netcdf;
 mod netcdf_axes;
+mod netcdf_beside;
+mod netcdf_lines;
 mod netcdf_maps;
 pub mod npy;
 mod opd;
@@ -209,7 +211,7 @@ fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &'a ReadParams) -> Chan
         Format::EsriGrid => esri::channels(bytes, &params.missing)?,
         Format::Gsf => only(move || gsf::parse(bytes)),
         Format::Gwy => gwy::channels(bytes, params.mask)?,
-        Format::Hdf5 | Format::NetCdf => netcdf_maps::channels(bytes, format, params.layout, params.max_bytes)?,
+        Format::Hdf5 | Format::NetCdf => netcdf_maps::channels(bytes, format, params)?,
         Format::Ibw => ibw::channels(bytes)?,
         Format::Mat => mat_maps::channels(bytes, params.layout, params.max_bytes)?,
         Format::MetroPro => metropro::channels(bytes)?,
@@ -222,7 +224,7 @@ fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &'a ReadParams) -> Chan
         Format::Plux => plux::channels(bytes, params.max_bytes)?,
         Format::Png => png::channels(bytes, params.max_bytes),
         Format::Sdf => only(move || sdf::parse(bytes)),
-        Format::Sur => sur::channels(bytes, params.max_bytes)?,
+        Format::Sur => sur::channels(bytes, params.row_is_map, params.max_bytes)?,
         Format::Surfer => only(move || surfer::parse(bytes)),
         Format::Tiff => tiff::channels(bytes, params.max_bytes)?,
         Format::Vk4 => vk4::channels(bytes)?,

@@ -11,7 +11,7 @@
 
 use std::rc::Rc;
 
-use netcdf_reader::{NcAttrValue, NcAttribute, NcGroup, NcSliceInfo, NcSliceInfoElem, NcType, NcVariable};
+use netcdf_reader::{NcGroup, NcSliceInfo, NcSliceInfoElem, NcVariable};
 use rc_core::Grid;
 
 use super::channel::{Channel, Channels};
@@ -19,19 +19,17 @@ use super::field::{field, flip, transposed};
 use super::layout::Layout;
 use super::netcdf::{Arrays, is_number, open};
 use super::netcdf_axes::{self, Beside, Coordinates};
+use super::netcdf_beside::{FEW, attributes, long, others, scalings, with_units};
 use super::points::{self, Kind};
-use super::scalings::{Entries, Scalings, Value};
-use super::{axes, datx, unit};
-use crate::{Format, FormatError, HeightMap, Unit};
+use super::scalings::Scalings;
+use super::{axes, netcdf_lines, unit};
+use crate::{Format, FormatError, HeightMap, ReadParams, Unit};
 
 /// Maximum number of frames of an array that are channels.
 const MOST_FRAMES: u64 = 256;
 
 /// Maximum length of a last dimension whose indices are frames. They are layers of one scan.
 const MOST_LAYERS: u64 = 16;
-
-/// Number of values above which a vector is a profile or an axis, not a few settings.
-const FEW: u64 = 8;
 
 /// An array, or a frame of it, that may be a map.
 #[derive(Clone)]
@@ -42,10 +40,14 @@ struct Listed {
     unit: Unit,
 }
 
-pub(super) fn channels(bytes: &[u8], format: Format, layout: Option<Layout>, max_bytes: u64) -> Channels<'_> {
+pub(super) fn channels<'a>(bytes: &[u8], format: Format, params: &ReadParams) -> Channels<'a> {
+    let (layout, max_bytes) = (params.layout, params.max_bytes);
     let arrays = Rc::new(open(bytes, format, max_bytes)?);
     let mut listed = Vec::new();
     list(&arrays, arrays.root()?, "", &mut listed)?;
+    if listed.is_empty() && params.row_is_map {
+        return netcdf_lines::channels(&arrays, arrays.root()?);
+    }
     if listed.is_empty() {
         return of_vectors(&arrays, arrays.root()?, "", max_bytes);
     }
@@ -81,11 +83,6 @@ fn list(arrays: &Arrays, group: &NcGroup, path: &str, found: &mut Vec<Listed>) -
     group.groups.iter().try_for_each(|inner| list(arrays, inner, &format!("{path}{}/", inner.name), found))
 }
 
-/// Dimensions that are longer than 1, with their lengths.
-fn long(variable: &NcVariable) -> Vec<(usize, u64)> {
-    variable.shape().into_iter().enumerate().filter(|(_, n)| *n != 1).collect()
-}
-
 /// Whether a variable has numbers along two or three dimensions. Other dimensions must have length 1.
 fn is_map(variable: &NcVariable) -> bool {
     let is_text = netcdf_axes::class_of_matlab(variable).is_some_and(|class| class == "char");
@@ -97,49 +94,6 @@ fn frames(variable: &NcVariable) -> Option<(usize, u64)> {
     let [first, second, last] = *<&[_; 3]>::try_from(long(variable).as_slice()).ok()?;
     let are_layers = last.1 <= MOST_LAYERS && first.1.min(second.1) > MOST_LAYERS;
     Some(if are_layers { last } else { first })
-}
-
-/// Attributes that are numbers or texts.
-fn attributes(attributes: &[NcAttribute]) -> Entries {
-    let value = |value: &NcAttrValue| match value {
-        NcAttrValue::Chars(_) | NcAttrValue::Strings(_) => value.as_string().map(Value::Text),
-        other => other.as_f64_vec().map(Value::Numbers),
-    };
-    // Missing values of NetCDF are applied already, to the numbers as they are stored.
-    let is_applied = |name: &str| name == "missing_value";
-    let kept = attributes.iter().filter(|attribute| !is_applied(&attribute.name));
-    let others = kept.filter_map(|attribute| Some((attribute.name.clone(), value(&attribute.value)?)));
-    datx::entries(attributes).into_iter().chain(others).collect()
-}
-
-/// What stands around the arrays of the group at `path`: single numbers and texts, and attributes of the group and of
-/// those around it.
-fn others(arrays: &Arrays, path: &str) -> Result<Entries, FormatError> {
-    let groups: Vec<&str> = path.split('/').filter(|name| !name.is_empty()).collect();
-    let mut chain = vec![arrays.root()?];
-    for name in groups {
-        let Some(inner) = chain.last().and_then(|group| group.groups.iter().find(|inner| inner.name == name)) else {
-            break;
-        };
-        chain.push(inner);
-    }
-    let mut entries = Entries::new();
-    if let Some(group) = chain.last() {
-        let is_short = |variable: &&NcVariable| {
-            variable.shape().iter().try_fold(1, |n: u64, m| n.checked_mul(*m)).is_some_and(|n| n <= 2)
-        };
-        for variable in group.variables.iter().filter(is_short) {
-            let path = format!("{path}{}", variable.name());
-            let value = match variable.dtype() {
-                NcType::String | NcType::Char => arrays.file.read_variable_as_string(&path).ok().map(Value::Text),
-                kind if is_number(kind) => arrays.values(&path, None).ok().map(Value::Numbers),
-                _ => None,
-            };
-            entries.extend(value.map(|value| (variable.name().to_owned(), value)));
-        }
-    }
-    entries.extend(chain.iter().rev().flat_map(|group| attributes(&group.attributes)));
-    Ok(entries)
 }
 
 /// The points of three vectors of a group, of which two are called x and y.
@@ -186,20 +140,6 @@ fn of_paths(arrays: &Arrays, paths: &[String; 3], max_bytes: u64) -> Result<Heig
     }
     scalings(arrays, z)?.apply(&mut map);
     Ok(map)
-}
-
-/// Sides in metres if one of the units of x and y is named.
-fn with_units(format: Format, sides: [f64; 2], units: &[String; 2]) -> Result<(Option<[f64; 2]>, Unit), FormatError> {
-    let [x, y] = units;
-    let both = [unit::of_sides(format, "unit of x", x)?, unit::of_sides(format, "unit of y", y)?];
-    let (factors, unit) = unit::of_both(both);
-    Ok((Some([sides[0] * factors[0], sides[1] * factors[1]]), unit))
-}
-
-/// What stands beside the array at `path`.
-fn scalings(arrays: &Arrays, path: &str) -> Result<Scalings, FormatError> {
-    let group = path.rsplit_once('/').map_or(String::new(), |(group, _)| format!("{group}/"));
-    Ok(Scalings::of(&attributes(arrays.variable(path)?.attributes()), &others(arrays, &group)?))
 }
 
 fn map(arrays: &Arrays, listed: &Listed, layout: Option<Layout>, max_bytes: u64) -> Result<HeightMap, FormatError> {

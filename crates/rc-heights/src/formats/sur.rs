@@ -69,7 +69,7 @@ struct Object<'a> {
     data: &'a [u8],
 }
 
-pub(super) fn channels(bytes: &[u8], max_bytes: u64) -> Channels<'_> {
+pub(super) fn channels(bytes: &[u8], row_is_map: bool, max_bytes: u64) -> Channels<'_> {
     let mut channels = Vec::new();
     let mut rest = bytes;
     loop {
@@ -84,7 +84,7 @@ pub(super) fn channels(bytes: &[u8], max_bytes: u64) -> Channels<'_> {
         let stored = object.stored();
         let data = object.data;
         let (name, is_height) = (object.name.clone(), object.is_height && !PICTURES.contains(&object.kind));
-        let channel = object.is_map().map(|()| {
+        let channel = object.is_map(row_is_map).map(|()| {
             let read = Box::new(move || object.read(is_height, max_bytes));
             Channel { name: name.clone(), is_height, read }
         });
@@ -118,9 +118,11 @@ fn object(bytes: &[u8]) -> Result<Object<'_>, FormatError> {
     }
     let units = [header.text::<16>(180)?, header.text::<16>(196)?, header.text::<16>(212)?];
     let [x, y, z] = [metres(&units[0]), metres(&units[1]), metres(&units[2])];
-    let sides = match (x, y) {
+    // A profile has no axis y.
+    let is_line = header.u16(18)? == PROFILE && grid.ny() == 1;
+    let sides = match (x, if is_line { x } else { y }) {
         (Some(x), Some(y)) => {
-            let spacing = [x * header.f32(120)?, y * header.f32(124)?];
+            let spacing = [x * header.f32(120)?, y * header.f32(if is_line { 120 } else { 124 })?];
             Some(sides(Format::Sur, ["spacing along x", "spacing along y"], grid, spacing)?)
         }
         _ => None,
@@ -144,10 +146,10 @@ fn object(bytes: &[u8]) -> Result<Object<'_>, FormatError> {
 }
 
 impl Object<'_> {
-    /// An error for an object that is not a map.
-    fn is_map(&self) -> Result<(), FormatError> {
+    /// An error for an object that is not a map, or not a profile that counts as one.
+    fn is_map(&self, row_is_map: bool) -> Result<(), FormatError> {
         let other = OTHERS.iter().find(|(kind, _)| *kind == self.kind).map(|(_, what)| *what);
-        let (what, cure) = if self.kind == PROFILE && self.grid.ny() == 1 {
+        let (what, cure) = if self.kind == PROFILE && self.grid.ny() == 1 && !row_is_map {
             ("a profile, not a map,".to_owned(), "a map of heights is needed: save the surface")
         } else if let Some(what) = other {
             (what.to_owned(), "a map of heights is needed: save the surface")

@@ -10,7 +10,7 @@ use super::checks::{checked_grid, positive};
 use super::realisation::{FIRST_SEED, checked_seed, realisation};
 use crate::error::CliError;
 use crate::scene::keys::SurfaceKeys;
-use crate::scene::like::Reference;
+use crate::scene::like::{Reference, file_of, read_map};
 use crate::scene::profile::Profile;
 use crate::scene::psd_file::PsdFile;
 use crate::scene::surface::{Source, SurfaceSetup};
@@ -24,9 +24,13 @@ const ELEMENTS_PER_WAVE: f64 = 4.0;
 /// # Errors
 /// [`CliError::Input`].
 pub(super) fn like(keys: SurfaceKeys, like: &Path) -> Result<SurfaceSetup, CliError> {
-    match Profile::read(like, &keys)? {
+    if let Some(profile) = Profile::read(like, &keys)? {
+        return of_profile(keys, like, &profile);
+    }
+    let map = read_map(like, &keys)?;
+    match Profile::of_map(&file_of(like), &map)? {
         Some(profile) => of_profile(keys, like, &profile),
-        None => twin(keys, like),
+        None => twin(Reference::of(like, map, &keys)?, keys, like),
     }
 }
 
@@ -60,12 +64,11 @@ fn of_profile(keys: SurfaceKeys, like: &Path, profile: &Profile) -> Result<Surfa
 }
 
 /// The setup of a twin of the map that `like` names.
-fn twin(keys: SurfaceKeys, like: &Path) -> Result<SurfaceSetup, CliError> {
+fn twin(reference: Reference, keys: SurfaceKeys, like: &Path) -> Result<SurfaceSetup, CliError> {
     if keys.amplitudes.is_some() {
         return Err(CliError::input("amplitudes: a twin has those of its map; omit amplitudes"));
     }
     let seed = checked_seed(keys.seed.unwrap_or(FIRST_SEED))?;
-    let reference = Reference::read(like, &keys)?;
     let sides = reference.sides_of_twin(&keys);
     let cell = PeriodicCell::rectangle(sides[0], sides[1]).map_err(CliError::input)?;
     let [nx, ny] = reference.points(sides);
