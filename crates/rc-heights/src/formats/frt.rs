@@ -173,7 +173,6 @@ impl<'a> Image<'a> {
         let scale = if is_height { common.scale } else { 1.0 };
         let [low, high] =
             if is_height && self.number == Number::U16 { common.valid } else { [f64::NEG_INFINITY, f64::INFINITY] };
-        #[expect(clippy::float_cmp, reason = "the mark is one integer")]
         scale_measured(&mut values, scale, |value| value == MISSING || value < low || value > high);
         Ok(map(self.grid, values, is_height, Some(common.sides)).of_numbers(scale))
     }

@@ -70,12 +70,13 @@ fn channel<'a>(name: &str, items: &[Item<'_>], matrix: (u32, u32, &'a [u8])) -> 
     let missing = |field| FormatError::Missing { format: Format::Opdx, field };
     let (nx, ny, data) = matrix;
     let grid = Grid::new(nx as usize, ny as usize)?;
-    let side = |field| {
+    // An extent is from the first point to the last one.
+    let side = |field, n: usize| {
         let Some((value, unit)) = quantity(field) else { return Err(missing(field)) };
         let Some(unit) = metres(unit) else { return Err(refused(Format::Opdx, field, unit, "a length")) };
-        positive(Format::Opdx, field, value * unit)
+        positive(Format::Opdx, field, value * unit / (n - 1).max(1) as f64 * n as f64)
     };
-    let sides = [side("Dimension2Extent")?, side("Dimension1Extent")?];
+    let sides = [side("Dimension2Extent", grid.nx())?, side("Dimension1Extent", grid.ny())?];
     let (scale, unit) = quantity("DataScale").ok_or_else(|| missing("DataScale"))?;
     let unit = metres(unit);
     let scale = factor(Format::Opdx, "DataScale", scale * unit.unwrap_or(1.0))?;

@@ -48,7 +48,7 @@ const CONTAINERS: [Kind; 2] =
 const TIFF: &[&[u8]] = &[b"II*\0", b"MM\0*"];
 
 /// Kinds with marks.
-const MARKED: [Kind; 46] = [
+const MARKED: [Kind; 47] = [
     kind(0, OLE, &["xls"], "an old Excel workbook (.xls)", TABLE),
     kind(0, OLE, &["mnt"], "a document of Mountains (.mnt)", "such files are not read: save the surface in it as .sur"),
     kind(0, OLE, &[], "a document of Office or of another program", TABLE),
@@ -94,6 +94,7 @@ const MARKED: [Kind; 46] = [
     kind(0, &[b"fileType      Image"], &[], "a PicoScan file (.mi)", GWYDDION),
     kind(0, &[b"ZISRAWFILE"], &[], "a Zeiss file (.czi)", EXPORT),
     kind(0, &[b"#VRML"], &[], "a VRML mesh", MESH),
+    kind(0, &[b"ISO-10303-21"], &[], "a body of CAD (STEP)", MESH),
     kind(0, &[b"#!JPK", b"#R3F"], &[], "a file of force curves, not a map", CURVES),
 ];
 

@@ -52,7 +52,10 @@ pub(super) fn channels(bytes: &[u8], max_bytes: u64) -> Channels<'_> {
         name: wide(&header.array::<64>(4)?),
         is_height: image.is_height,
         read: Box::new(move || {
-            limit::check_map(image.grid, if image.is_turned { 8 } else { 0 }, others, max_bytes)?;
+            // A promise of more numbers than there are is refused as such.
+            if image.number.bytes_of(image.grid) <= others {
+                limit::check_map(image.grid, if image.is_turned { 8 } else { 0 }, others, max_bytes)?;
+            }
             image.read(data)
         }),
     }])

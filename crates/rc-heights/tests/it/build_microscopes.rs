@@ -93,7 +93,10 @@ pub(crate) fn matrix(columns: u32, values: &[f64]) -> Vec<u8> {
 }
 
 pub(crate) fn opdx_map(name: &str, items: &[Vec<u8>]) -> Vec<u8> {
-    let other = [item("Inverted", 1, &[0]), item("Position", 0x7c, &[named(b"a type"), sized(b"x")].concat())].concat();
+    // An axis has a value, a name, a symbol, a divisor and other bytes.
+    let axis = [f64s(&[6.0]), named(b"Micrometres"), named(b"um"), f64s(&[1.0]), vec![0; 12]].concat();
+    let positions = [named(b"a type"), sized(&axis.repeat(2))].concat();
+    let other = [item("Inverted", 1, &[0]), item("PositionFunction", 0x7c, &positions)].concat();
     container(name, &[items.concat(), other])
 }
 
@@ -101,9 +104,12 @@ pub(crate) fn opdx_map(name: &str, items: &[Vec<u8>]) -> Vec<u8> {
 pub(crate) fn opdx_items() -> Vec<Vec<u8>> {
     vec![
         quantity("DataScale", 1e-3, "\u{b5}m"),
-        quantity("Dimension1Extent", 6.0, "\u{b5}m"),
-        quantity("Dimension2Extent", 6e-3, "mm"),
         matrix(3, &HEIGHTS),
+        quantity("Dimension1Extent", 3.0, "\u{b5}m"),
+        quantity("Dimension2Extent", 4e-3, "mm"),
+        item("Dimension1Points", 7, &u32s(&[2])),
+        item("Dimension2Points", 7, &u32s(&[3])),
+        item("DataKind", 0x12, &sized(b"Height")),
     ]
 }
 
@@ -114,6 +120,7 @@ pub(crate) fn opdx(maps: &[Vec<u8>]) -> Vec<u8> {
         item("Count", 7, &[1, 0, 0, 0]),
         item("Scale", 0x0d, &[0; 8]),
         item("Time", 0x15, &[0; 9]),
+        item("DataKind", 0x12, &sized(b"Surface Height")),
         item("PrimaryData2D", 0x12, &sized(b"Height")),
         list,
     ];

@@ -14,6 +14,7 @@ const FILES: &[(&str, &[u8], &str)] = &[
     ("scan.mi", b"fileType      Image", "a PicoScan file"),
     ("part.stl", b"\0\0\0\0", "an STL mesh"),
     ("part.txt", b"solid part\n facet normal 0 0 1\n", "an STL mesh"),
+    ("part.stp", b"ISO-10303-21;\nHEADER;\n", "a body of CAD"),
     ("part.obj", b"v 0 0 0\n", "a mesh"),
     ("part.dat", b"ply\nformat ascii 1.0\n", "a PLY mesh"),
     ("a.off", b"OFF\n3 1 0\n", "an OFF mesh"),

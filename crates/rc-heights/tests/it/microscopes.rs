@@ -87,7 +87,7 @@ fn missing_points_have_the_marks_of_their_format() {
     let mut floats = HEIGHTS;
     floats[4] = f64::NAN;
     let mut items = build::opdx_items();
-    items[3] = build::matrix(3, &floats);
+    items[1] = build::matrix(3, &floats);
     let opdx = build::opdx(&[build::opdx_map("Height", &items)]);
     assert_point_4_is_missing("opdx", &read("opdx", &opdx, Format::Opdx));
     // The mark, and integers that are not valid: 4 is too low, and 65530 too high.
@@ -150,8 +150,8 @@ fn headers_that_promise_terabytes_are_refused_before_memory_is_taken() {
     let wsxm = build::WSXM_HEADER.replace(": 3\r", ": 1048576\r");
     let mut items = build::opdx_items();
     // Rows and columns follow the name, the type, two names and lengths.
-    let place = items[3].len() - 32;
-    items[3] = with(items[3].clone(), &[(place, &[0, 0, 0x10, 0, 0, 0, 0x10, 0])]);
+    let place = items[1].len() - 32;
+    items[1] = with(items[1].clone(), &[(place, &[0, 0, 0x10, 0, 0, 0, 0x10, 0])]);
     let mut blocks = build::frt_blocks(build::tenths());
     blocks[1].1 = [1_048_576_u32, 1_048_576, 16].map(u32::to_le_bytes).concat();
     let park = build::park_header([1_048_576; 2], [6.0, 6.0], true);
@@ -162,6 +162,7 @@ fn headers_that_promise_terabytes_are_refused_before_memory_is_taken() {
         (Format::Wsxm, build::wsxm(&wsxm, &[0; 48])),
         (Format::Opdx, build::opdx(&[build::opdx_map("Height", &items)])),
         (Format::Frt, build::frt(&blocks)),
+        (Format::Tiff, build::park(&park, &[0; 24])),
         (Format::Bcr, bcr.into_bytes()),
         (
             Format::Vk4,
@@ -171,11 +172,10 @@ fn headers_that_promise_terabytes_are_refused_before_memory_is_taken() {
         let error = parse(&bytes, format).expect_err("a promise").to_string();
         assert!(error.contains("shorter than its header says"), "{format}: {error}");
     }
-    let error = parse(&build::park(&park, &[0; 24]), Format::Tiff).expect_err("a promise").to_string();
-    assert!(error.contains("of memory"), "{error}");
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of cases")]
 fn wrong_headers_are_named_with_their_field() {
     let nid = |from: &str, to: &str| {
         let section = build::nid_section("A", "Scan forward", "Z-Axis", "m").replace(from, to);
@@ -215,8 +215,8 @@ fn wrong_headers_are_named_with_their_field() {
         ((Format::Wsxm, build::wsxm(build::WSXM_HEADER, &[0; 49])), "longer than its header says"),
         (opdx(0, build::quantity("Scale", 1.0, "m")), "DataScale is missing"),
         (opdx(0, build::quantity("DataScale", 0.0, "m")), "DataScale is '0'"),
-        (opdx(1, build::quantity("Dimension1Extent", 1.0, "V")), "Dimension1Extent is 'V'"),
-        (opdx(2, build::quantity("Dimension2Extent", -1.0, "m")), "Dimension2Extent is '-1'"),
+        (opdx(2, build::quantity("Dimension1Extent", 1.0, "V")), "Dimension1Extent is 'V'"),
+        (opdx(3, build::quantity("Dimension2Extent", -1.0, "m")), "Dimension2Extent is '-1.5'"),
         (opdx(0, build::item("Odd", 0x33, &[])), "type of an item is '51'"),
         (opdx(0, build::item("Odd", 0x13, &[3, 0, 0, 0])), "bytes of a length is '3'"),
         ((Format::Opdx, build::opdx(&[deep])), "depth of containers"),
