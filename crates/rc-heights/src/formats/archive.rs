@@ -5,8 +5,8 @@ use std::path::Path;
 
 use zip::ZipArchive;
 
+use super::Format;
 use super::fields::shown;
-use super::{Format, vk6};
 use crate::FormatError;
 
 /// The first bytes of a zip archive.
@@ -15,8 +15,7 @@ pub(super) const ZIP: &[u8] = b"PK\x03\x04";
 pub(super) const GZIP: &[u8] = b"\x1f\x8b\x08";
 
 /// Formats by the ends of the names of members.
-const FORMATS: &[(&str, Format)] =
-    &[("main.xml", Format::X3p), ("index.xml", Format::Plux), (vk6::MEMBER, Format::Vk4)];
+const FORMATS: &[(&str, Format)] = &[("main.xml", Format::X3p), ("index.xml", Format::Plux), ("Vk4File", Format::Vk4)];
 
 /// Other archives by the names of members, or by their ends from a dot on, with a description.
 const OTHERS: &[(&str, &str)] = &[

@@ -21,7 +21,7 @@ pub(super) const MARKS: [&[u8]; 2] = [b"VK6", b"VK7"];
 const HEADER: usize = 7;
 
 /// The member of the archive with the file of version 4.
-pub(super) const MEMBER: &str = "Vk4File";
+const MEMBER: &str = "Vk4File";
 
 /// Bytes of memory for a byte of the member: itself, and the height of one byte.
 const MEMORY: u64 = 9;
