@@ -31,7 +31,7 @@ pub enum FormatError {
     #[error(
         "its format is not known, neither from its first bytes nor from its name; a height map is a text file (.csv, .txt, .dat, .asc, .xyz), an array (.npy, \
          .mat, .h5, .nc), a file from a program (.gwy, .gsf, .grd, .ibw, .sdf, .x3p) or from an instrument (.sur, .spm, .opd, .dat of \
-         MetroPro, .al3d, .plu, .plux, .vk4), or an image (.png, .tif)"
+         MetroPro, .al3d, .plu, .plux, .vk4, .vk6, .nid, .stp, .opdx, .frt, .bcrf), or an image (.png, .tif)"
     )]
     Unknown,
     /// The file is an archive, or belongs to a program, and is not a height map.

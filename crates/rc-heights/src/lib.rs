@@ -8,7 +8,8 @@
 //! - files of programs and standards: Gwyddion `.gwy` and `.gsf`, Surfer `.grd`, Igor `.ibw`, ISO 25178-71 `.sdf`, ISO
 //!   5436-2 `.x3p`;
 //! - files of instruments: Digital Surf `.sur`, Nanoscope `.spm`, Wyko `.opd`, MetroPro `.dat`, Alicona `.al3d`,
-//!   Sensofar `.plu` and `.plux`, Keyence `.vk4`;
+//!   Sensofar `.plu` and `.plux`, Keyence `.vk4` and `.vk6`, Nanosurf `.nid`, WSxM `.stp`, Park `.tiff`, Bruker `.opdx`,
+//!   FRT `.frt`, SPIP `.bcrf`;
 //! - grayscale PNG and TIFF;
 //! - any of these compressed with gzip.
 //!

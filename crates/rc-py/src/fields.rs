@@ -110,7 +110,7 @@ pub(crate) fn cells(summary: &str, scene: &str) -> PyResult<String> {
         serde_json::from_str(summary).map_err(|cause| bad_input(format!("summary.json: {cause}")))?;
     let mut cells = summary.cells();
     if scene.contact.leakage {
-        LeakageSummary::complete(&mut cells);
+        LeakageSummary::complete(&mut cells, scene.contact.viscosity.is_some());
     }
     Ok(to_json(&cells))
 }

@@ -41,7 +41,7 @@ pub struct SurfaceKeys {
     /// Height map: text, .npy, instrument files; positive towards the half-space
     ///
     /// Formats: text, .xyz, .npy, .mat, .h5, .nc, .gwy, .gsf, .grd, .ibw, .sdf, .x3p, .sur, .spm, .opd, .dat, .al3d,
-    /// .plu, .plux, .vk4, 16-bit .png or .tif.
+    /// .plu, .plux, .vk4, .vk6, .nid, .stp, .opdx, .frt, .bcrf, 16-bit .png or .tif.
     #[arg(long, value_name = "FILE")]
     pub heights: Option<PathBuf>,
     /// Fourier coefficients: lines kx ky Re Im (waves per cell; m)

@@ -15,7 +15,7 @@ pub(super) const ZIP: &[u8] = b"PK\x03\x04";
 pub(super) const GZIP: &[u8] = b"\x1f\x8b\x08";
 
 /// Formats by the ends of the names of members.
-const FORMATS: &[(&str, Format)] = &[("main.xml", Format::X3p), ("index.xml", Format::Plux)];
+const FORMATS: &[(&str, Format)] = &[("main.xml", Format::X3p), ("index.xml", Format::Plux), ("Vk4File", Format::Vk4)];
 
 /// Other archives by the names of members, or by their ends from a dot on, with a description.
 const OTHERS: &[(&str, &str)] = &[
@@ -25,7 +25,10 @@ const OTHERS: &[(&str, &str)] = &[
     ("header.properties", "a JPK measurement of force curves, not a map of heights; give the image of the heights"),
     ("3D/3dmodel.model", "a 3MF mesh, not a map; give its heights on a regular grid, as points x y z or as a map"),
     ("Index/Document.iwa", "a document of Apple Numbers or Pages; save the numbers as .csv"),
-    (".oir", "an Olympus measurement (.poir); export its heights, as text or as .sdf"),
+    (
+        ".oir",
+        "an Olympus measurement (.poir); such files are not read: export .x3p, .sur or text from the instrument's program",
+    ),
     (".npy", "an archive of NumPy arrays (.npz); save one of them with numpy.save, as .npy"),
     ("meta.yml", "a container with several maps; unpack it and give one of them"),
 ];

@@ -51,11 +51,21 @@ pub enum Format {
     Plux,
     /// Keyence VK.
     Vk4,
+    /// Nanosurf.
+    Nid,
+    /// WSxM, images.
+    Wsxm,
+    /// Bruker Dektak and Vision.
+    Opdx,
+    /// FRT MicroProf.
+    Frt,
+    /// Image Metrology BCR.
+    Bcr,
 }
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 29] = [
         Self::Npy,
         Self::Csv,
         Self::Xyz,
@@ -80,6 +90,11 @@ impl Format {
         Self::Plu,
         Self::Plux,
         Self::Vk4,
+        Self::Nid,
+        Self::Wsxm,
+        Self::Opdx,
+        Self::Frt,
+        Self::Bcr,
     ];
 }
 
@@ -110,6 +125,11 @@ impl std::fmt::Display for Format {
             Self::Plu => "plu",
             Self::Plux => "plux",
             Self::Vk4 => "Keyence VK",
+            Self::Nid => "Nanosurf",
+            Self::Wsxm => "WSxM",
+            Self::Opdx => "OPDx",
+            Self::Frt => "MicroProf",
+            Self::Bcr => "BCR-STM",
         })
     }
 }

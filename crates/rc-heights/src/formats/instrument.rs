@@ -36,7 +36,15 @@ impl<'a> Places<'a> {
 
     /// A 32-bit count, size or place.
     pub(super) fn size(self, at: usize) -> Result<usize, FormatError> {
-        Ok(u32::from_le_bytes(self.array(at)?) as usize)
+        Ok(self.u32(at)? as usize)
+    }
+
+    pub(super) fn u32(self, at: usize) -> Result<u32, FormatError> {
+        self.array(at).map(u32::from_le_bytes)
+    }
+
+    pub(super) fn f64(self, at: usize) -> Result<f64, FormatError> {
+        self.array(at).map(f64::from_le_bytes)
     }
 
     pub(super) fn f32(self, at: usize) -> Result<f64, FormatError> {

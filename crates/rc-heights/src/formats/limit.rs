@@ -66,9 +66,15 @@ impl Needed {
             // Numbers of 64 bits, and the heights.
             Format::Gwy => 2,
             // Numbers of 32, 16 and 8 bits.
-            Format::Al3d | Format::Gsf | Format::Plu => 3,
-            Format::MetroPro | Format::Nanoscope | Format::Sdf | Format::Surfer => 5,
-            Format::Ibw | Format::Opd | Format::Vk4 => 9,
+            Format::Al3d | Format::Gsf | Format::Opdx | Format::Plu => 3,
+            Format::Bcr
+            | Format::Frt
+            | Format::MetroPro
+            | Format::Nanoscope
+            | Format::Sdf
+            | Format::Surfer
+            | Format::Wsxm => 5,
+            Format::Ibw | Format::Nid | Format::Opd | Format::Vk4 => 9,
         })
     }
 

@@ -3,6 +3,7 @@
 mod al3d;
 mod archive;
 mod axes;
+mod bcr;
 mod binary;
 mod brackets;
 mod channel;
@@ -14,6 +15,7 @@ mod esri;
 mod field;
 mod fields;
 mod format;
+mod frt;
 pub mod gsf;
 mod gwy;
 mod heading;
@@ -35,12 +37,15 @@ mod netcdf_axes;
 mod netcdf_beside;
 mod netcdf_lines;
 mod netcdf_maps;
+mod nid;
 pub mod npy;
 mod opd;
+mod opdx;
 mod opened;
 mod order;
 mod other;
 mod params;
+mod park;
 mod plu;
 mod plux;
 mod png;
@@ -60,6 +65,8 @@ mod tiff_sides;
 mod titles;
 mod unit;
 mod vk4;
+mod vk6;
+mod wsxm;
 mod x3p;
 mod xyz;
 mod zygo;
@@ -207,8 +214,10 @@ pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<H
 fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &'a ReadParams) -> Channels<'a> {
     Ok(match format {
         Format::Al3d => al3d::channels(bytes)?,
+        Format::Bcr => bcr::channels(bytes)?,
         Format::Csv => text::channels(bytes, params.layout, &params.missing)?,
         Format::EsriGrid => esri::channels(bytes, &params.missing)?,
+        Format::Frt => frt::channels(bytes)?,
         Format::Gsf => only(move || gsf::parse(bytes)),
         Format::Gwy => gwy::channels(bytes, params.mask)?,
         Format::Hdf5 | Format::NetCdf => netcdf_maps::channels(bytes, format, params)?,
@@ -218,8 +227,10 @@ fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &'a ReadParams) -> Chan
         // Exports as text have the same header.
         Format::Nanoscope if is_text(bytes) => text::channels(bytes, params.layout, &params.missing)?,
         Format::Nanoscope => nanoscope::channels(bytes)?,
+        Format::Nid => nid::channels(bytes)?,
         Format::Npy => npy::channels(bytes, params),
         Format::Opd => opd::channels(bytes)?,
+        Format::Opdx => opdx::channels(bytes)?,
         Format::Plu => plu::channels(bytes)?,
         Format::Plux => plux::channels(bytes, params.max_bytes)?,
         Format::Png => png::channels(bytes, params.max_bytes),
@@ -227,7 +238,9 @@ fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &'a ReadParams) -> Chan
         Format::Sur => sur::channels(bytes, params.row_is_map, params.max_bytes)?,
         Format::Surfer => only(move || surfer::parse(bytes)),
         Format::Tiff => tiff::channels(bytes, params.max_bytes)?,
+        Format::Vk4 if vk6::is_archive(bytes) => vk6::channels(bytes, params.max_bytes)?,
         Format::Vk4 => vk4::channels(bytes)?,
+        Format::Wsxm => wsxm::channels(bytes)?,
         Format::X3p => x3p::channels(bytes, params.max_bytes),
         Format::Xyz => xyz::channels(bytes, &params.missing),
         Format::Zygo => zygo::channels(bytes, &params.missing),

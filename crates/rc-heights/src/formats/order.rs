@@ -6,6 +6,7 @@
 use super::decode::decoded;
 use super::field::flip;
 use super::heading::Heading;
+use super::park::is_park;
 use crate::{Format, HeightMap, ReadNote};
 
 impl Format {
@@ -16,11 +17,11 @@ impl Format {
     /// | PNG, TIFF | top | PNG (third edition) and TIFF 6.0: the first row of an image is the top |
     /// | `.gwy`, `.gsf` | top | the guide of Gwyddion, "Format of Gwyddion Files" |
     /// | `.sur` | top | Gwyddion (surffile) and SurfaceTopography show it so |
-    /// | `.al3d`, `.plu`, `.plux`, `.vk4`, MetroPro, texts of Zygo | top | the same for alicona, sensofar, keyence, metropro |
+    /// | `.al3d`, `.plu`, `.plux`, `.vk4`, `.opdx`, BCR-STM, MetroPro, texts of Zygo | top | the same for alicona, sensofar, keyence, dektakvca, bcrfile, metropro |
     /// | `.sdf`, `.x3p` | bottom | ISO 25178-71 and -72: the first profile has the lowest y (Gwyddion draws it at the top) |
     /// | ESRI grids | top | help of ArcGIS: the first row of the data is at the top |
     /// | Nanoscope | bottom | Gwyddion (nanoscope) and SurfaceTopography turn the image for their pictures |
-    /// | Igor, Wyko | bottom | the same for igorfile, opdfile |
+    /// | Igor, Wyko, Nanosurf, WSxM, MicroProf, TIFF of Park | bottom | the same for igorfile, opdfile, ezdfile, wsxmfile, microprof, psia |
     /// | Surfer | bottom | help of Golden Software: the first row has the lowest y |
     /// | arrays, tables, points | none | arrays have no picture; y of the points and coordinates counts |
     #[must_use]
@@ -35,6 +36,8 @@ impl Format {
             | Self::Plu
             | Self::Plux
             | Self::Vk4
+            | Self::Opdx
+            | Self::Bcr
             | Self::MetroPro
             | Self::EsriGrid
             | Self::Zygo => true,
@@ -43,6 +46,9 @@ impl Format {
             | Self::X3p
             | Self::Ibw
             | Self::Opd
+            | Self::Nid
+            | Self::Wsxm
+            | Self::Frt
             | Self::Surfer
             | Self::Npy
             | Self::Csv
@@ -56,7 +62,11 @@ impl Format {
 
 /// The map with its lowest row first, and a note if that changed the order.
 pub(super) fn bottom_first(mut map: HeightMap, bytes: &[u8], format: Format) -> HeightMap {
-    let is_top_first = format.first_row_is_top() || format == Format::Csv && is_exported_by_gwyddion(bytes);
+    let is_top_first = match format {
+        Format::Csv => is_exported_by_gwyddion(bytes),
+        Format::Tiff => !is_park(bytes),
+        format => format.first_row_is_top(),
+    };
     // A reader that already turned its rows has said so. A single row has no order.
     if !is_top_first || map.heights.grid().ny() == 1 || map.notes.contains(&ReadNote::RowsReversed) {
         return map;

@@ -6,7 +6,9 @@ use crate::FormatError;
 /// What to do with a file of a microscope that Gwyddion reads.
 const GWYDDION: &str = "Gwyddion reads it: save the heights there as .gwy or .gsf";
 /// What to do with a file of another instrument.
-const EXPORT: &str = "export the heights with a program that reads it, as text (.csv, .xyz), .sdf or .x3p";
+const EXPORT: &str = "such files are not read: export .x3p, .sur or text from the instrument's program";
+/// What to do with force curves.
+const CURVES: &str = "give the image of the heights";
 /// What to do with a mesh.
 const MESH: &str = "heights on a regular grid are needed: sample them, as points x y z or as a map";
 /// What to do with a picture.
@@ -46,10 +48,10 @@ const CONTAINERS: [Kind; 2] =
 const TIFF: &[&[u8]] = &[b"II*\0", b"MM\0*"];
 
 /// Kinds with marks.
-const MARKED: [Kind; 50] = [
+const MARKED: [Kind; 47] = [
     kind(0, OLE, &["xls"], "an old Excel workbook (.xls)", TABLE),
-    kind(0, OLE, &["mnt"], "a document of Mountains (.mnt)", "save the surface in it as .sur"),
-    kind(0, OLE, &[], "a document of Office or of another program", EXPORT),
+    kind(0, OLE, &["mnt"], "a document of Mountains (.mnt)", "such files are not read: save the surface in it as .sur"),
+    kind(0, OLE, &[], "a document of Office or of another program", TABLE),
     kind(0, &[b"\xff\xd8\xff"], &[], "a JPEG picture", PICTURE),
     kind(0, &[b"GIF87a", b"GIF89a"], &[], "a GIF picture", PICTURE),
     kind(0, &[b"BM"], &["bmp", "dib"], "a BMP picture", PICTURE),
@@ -79,15 +81,11 @@ const MARKED: [Kind; 50] = [
     kind(0, &[b"OFF\n", b"OFF\r"], &[], "an OFF mesh", MESH),
     kind(0, &[b"# .PCD"], &[], "a point cloud (.pcd)", "save the points as text, x y z in each line"),
     kind(0, &[b"LASF"], &[], "a point cloud (.las)", "save the points as text, x y z in each line"),
-    kind(0, &[b"VCA DATA"], &[], "a Dektak or Vision file (.opdx)", EXPORT),
-    kind(0, &[b"VK6", b"VK7"], &[], "a Keyence file of a newer kind (.vk6, .vk7)", EXPORT),
     kind(0, &[b"KPK0", b"KPK1"], &[], "a Keyence file (.zon)", EXPORT),
     kind(0, &[b"OLYMPUSRAWFORMAT"], &[], "an Olympus file (.oir)", EXPORT),
-    kind(0, &[b"FRTM_GLIDERV"], &[], "a MicroProf file (.frt)", GWYDDION),
     kind(0, &[b"OmniSurf3D"], &[], "an OmniSurf3D file", EXPORT),
     kind(0, &[b"Binary TrueMap"], &[], "a TrueMap file (.tmd)", EXPORT),
     kind(0, &[b"Zeta-Instruments"], &[], "a Zeta file (.zmg)", EXPORT),
-    kind(0, &[b"[DataSet]"], &[], "a Nanosurf file (.nid, .ezd)", GWYDDION),
     kind(0, &[b":NANONIS_VERSION:"], &[], "a Nanonis file (.sxm)", GWYDDION),
     kind(0, &[b"\x01\xb0\x93\xff"], &[], "an NT-MDT file (.mdt)", GWYDDION),
     kind(2, &[b"S\0T\0i\0M\0a\0g\0e\0"], &[], "an RHK file (.sm4)", GWYDDION),
@@ -96,22 +94,25 @@ const MARKED: [Kind; 50] = [
     kind(0, &[b"fileType      Image"], &[], "a PicoScan file (.mi)", GWYDDION),
     kind(0, &[b"ZISRAWFILE"], &[], "a Zeiss file (.czi)", EXPORT),
     kind(0, &[b"#VRML"], &[], "a VRML mesh", MESH),
-    kind(0, &[b"#!JPK", b"#R3F"], &[], "a file of force curves, not a map", EXPORT),
+    kind(0, &[b"ISO-10303-21"], &[], "a body of CAD (STEP)", MESH),
+    kind(0, &[b"#!JPK", b"#R3F"], &[], "a file of force curves, not a map", CURVES),
 ];
 
 const OLE: &[&[u8]] = &[b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"];
 
 /// Kinds that only the name tells.
-const NAMED: [Kind; 15] = [
+const NAMED: [Kind; 17] = [
     kind(0, &[], &["stl"], "an STL mesh", MESH),
     kind(0, &[], &["obj", "3mf", "wrl", "vrml", "step", "iges", "igs"], "a mesh or a body of CAD", MESH),
     kind(0, &[], &["las", "laz", "e57"], "a point cloud", "save the points as text, x y z in each line"),
-    kind(0, &[], &["jpk-force", "jpk-qi-data", "jpk-force-map"], "a JPK file of force curves, not a map", EXPORT),
+    kind(0, &[], &["jpk-force", "jpk-qi-data", "jpk-force-map"], "a JPK file of force curves, not a map", CURVES),
     kind(0, &[], &["jpk"], "a JPK image", GWYDDION),
-    kind(0, &[], &["stp", "top", "tom", "gsi", "mpp"], "a WSxM file", GWYDDION),
-    kind(0, &[], &["nid", "ezd", "mdt", "sxm", "sm4", "mi", "frt", "hdf"], "a file of a microscope", GWYDDION),
+    kind(0, &[], &["tom", "gsi", "mpp"], "a WSxM file", GWYDDION),
+    kind(0, &[], &["mdt", "sxm", "sm4", "mi", "hdf"], "a file of a microscope", GWYDDION),
     kind(0, &[], &["pro", "mnt"], "a Digital Surf file, but not a surface", "save the surface as .sur"),
-    kind(0, &[], &["vk6", "vk7", "zon", "opdx", "lext", "oir", "poir", "nms", "os3d", "tmd"], INSTRUMENT, EXPORT),
+    kind(0, &[], &["lext", "oir", "poir"], "an Olympus file", EXPORT),
+    kind(0, &[], &["zon"], "a Keyence file", EXPORT),
+    kind(0, &[], &["nms", "os3d", "tmd", "zmg", "czi"], INSTRUMENT, EXPORT),
     kind(0, &[], &["npz", "pkl", "pickle", "pt"], "an archive of arrays", ARRAY),
     kind(0, &[], &["zarr", "n5", "parquet", "feather", "arrow"], "a table or array of another kind", ARRAY),
     kind(0, &[], &["vtk", "vti", "vtu", "vtp", "vts", "vtr", "pvd"], "a VTK file", ARRAY),
@@ -120,7 +121,7 @@ const NAMED: [Kind; 15] = [
     kind(0, &[], &["xls", "xlsx", "ods", "doc", "docx"], "a document of Office", TABLE),
 ];
 
-const INSTRUMENT: &str = "a file of an instrument of a kind that is not read";
+const INSTRUMENT: &str = "a file of an instrument";
 
 /// The error for a file that is `what`, with what to do.
 fn other(what: &str, cure: &str) -> FormatError {
@@ -153,12 +154,8 @@ pub(super) fn marked(extension: Option<&str>, start: &[u8]) -> Option<FormatErro
     if let Some(kind) = MARKED.iter().find(is) {
         return Some(kind.error());
     }
-    // Other texts of WSxM have points or rows of numbers.
     let first = &start[..start.len().min(200)];
     let contains = |part: &[u8]| first.windows(part.len()).any(|window| window == part);
-    if start.starts_with(b"WSxM file copyright") && contains(b"SxM Image file") {
-        return Some(other("a WSxM image", GWYDDION));
-    }
     if contains(b"<VTKFile") {
         return Some(other("a VTK file", ARRAY));
     }

@@ -6,7 +6,10 @@ use std::path::Path;
 
 use super::archive::{self, ZIP};
 use super::decode::{decoded, is_text};
-use super::{Format, al3d, esri, gsf, gwy, ibw, mat, metropro, nanoscope, opd, other, sur, vk4, xyz, zygo};
+use super::{
+    Format, al3d, bcr, esri, frt, gsf, gwy, ibw, mat, metropro, nanoscope, nid, opd, opdx, other, sur, vk4, vk6, wsxm,
+};
+use super::{xyz, zygo};
 use crate::FormatError;
 
 /// The signature of HDF5.
@@ -52,6 +55,13 @@ const MARKS: &[(&[u8], Format)] = &[
     (al3d::MARK, Format::Al3d),
     (vk4::MARKS[0], Format::Vk4),
     (vk4::MARKS[1], Format::Vk4),
+    (vk6::MARKS[0], Format::Vk4),
+    (vk6::MARKS[1], Format::Vk4),
+    (nid::MARK, Format::Nid),
+    (opdx::MARK, Format::Opdx),
+    (frt::MARK, Format::Frt),
+    (bcr::MARKS[0], Format::Bcr),
+    (bcr::MARKS[1], Format::Bcr),
 ];
 
 impl Format {
@@ -88,6 +98,9 @@ impl Format {
         }
         if ibw::order(start).is_some() {
             return Ok(Self::Ibw);
+        }
+        if wsxm::is_image(start) {
+            return Ok(Self::Wsxm);
         }
         if [512, 1024, 2048].iter().any(|at| start.get(*at..).is_some_and(|rest| rest.starts_with(HDF5))) {
             return Ok(Self::Hdf5);
@@ -133,6 +146,12 @@ impl Format {
             Some("plu") => Ok(Self::Plu),
             Some("plux") => mark(Self::Plux, "it must be a zip archive"),
             Some("vk4") => mark(Self::Vk4, "it must begin with VK4_"),
+            Some("vk6" | "vk7") => mark(Self::Vk4, "it must begin with VK6 or VK7"),
+            Some("nid" | "ezd") => mark(Self::Nid, "it must begin with the line [DataSet]"),
+            Some("stp" | "top") => mark(Self::Wsxm, "it must begin with 'WSxM file copyright' and 'SxM Image file'"),
+            Some("opdx") => mark(Self::Opdx, "it must begin with VCA DATA"),
+            Some("bcr" | "bcrf") => mark(Self::Bcr, "it must begin with 'fileformat = bcrstm' or 'fileformat = bcrf'"),
+            Some("frt") => mark(Self::Frt, "it must begin with FRTM_GLIDERV"),
             _ => Err(extension.and_then(other::named).unwrap_or(FormatError::Unknown)),
         }
     }

@@ -15,16 +15,13 @@ use super::channel::{Channel, Channels};
 use super::field::field;
 use super::fields::shown_as_line;
 use super::tiff_sides::{self, Image};
-use super::{limit, tiff_ifd};
+use super::{limit, park, tiff_ifd};
 use crate::{Format, FormatError, HeightMap, Unit};
 
 /// Maximum number of bytes that LZW makes of one byte, since 12 bits may represent 4096 bytes.
 ///
 /// Deflate makes fewer.
 const MOST_INFLATION: u64 = 2731;
-
-/// A tag that only files of Park Systems have. Their heights are in other tags.
-const PARK: u16 = 50432;
 
 /// Maximum number of images that are channels.
 const MOST_IMAGES: usize = 256;
@@ -33,6 +30,9 @@ const MOST_IMAGES: usize = 256;
 const LONGEST_TAG: usize = 16 << 20;
 
 pub(super) fn channels(bytes: &[u8], max_bytes: u64) -> Channels<'_> {
+    if park::is_park(bytes) {
+        return park::channels(bytes, max_bytes);
+    }
     let mut image = opened(bytes)?;
     let mut are_heights = vec![is_of_heights(&mut image)];
     while image.more_images() && are_heights.len() < MOST_IMAGES && image.next_image().is_ok() {
@@ -50,10 +50,11 @@ pub(super) fn channels(bytes: &[u8], max_bytes: u64) -> Channels<'_> {
 
 /// Whether the first image says the size of the measured rectangle.
 pub(super) fn says_sides(bytes: &[u8]) -> bool {
-    opened(bytes).is_ok_and(|mut image| {
-        let size = image.dimensions().unwrap_or_default();
-        tiff_sides::of(&mut image, size.into()).is_ok_and(|sides| sides.is_some())
-    })
+    park::is_park(bytes)
+        || opened(bytes).is_ok_and(|mut image| {
+            let size = image.dimensions().unwrap_or_default();
+            tiff_sides::of(&mut image, size.into()).is_ok_and(|sides| sides.is_some())
+        })
 }
 
 fn opened(bytes: &[u8]) -> Result<Image<'_>, FormatError> {
@@ -98,10 +99,6 @@ fn read(bytes: &[u8], page: usize, max_bytes: u64) -> Result<HeightMap, FormatEr
     let mut image = opened(&stored)?;
     image.seek_to_image(page).map_err(|cause| invalid(&cause))?;
     let (width, height) = image.dimensions().map_err(|cause| invalid(&cause))?;
-    if image.find_tag(Tag::Unknown(PARK)).map_err(|cause| invalid(&cause))?.is_some() {
-        let what = "a file from a Park AFM, whose picture is a thumbnail,".to_owned();
-        return Err(unsupported(what, "export its heights as text or save it as .gwy with Gwyddion"));
-    }
     let grid = Grid::new(width as usize, height as usize)?;
     let size = size_of(&mut image)?;
     let (needed, found) = (size * grid.len() as u64, (bytes.len() as u64).saturating_mul(MOST_INFLATION));

@@ -1,4 +1,4 @@
-//! Directories of TIFF, as far as a tag of them is changed before the file is decoded.
+//! Directories of TIFF, as far as a tag of them is changed before the file is decoded, or is private.
 
 use std::borrow::Cow;
 
@@ -37,6 +37,24 @@ pub(super) fn as_stored(bytes: &[u8]) -> Cow<'_, [u8]> {
     Cow::Owned(changed)
 }
 
+/// The stored bytes of a tag in the first directory of a file. They are fewer if the file is truncated.
+pub(super) fn stored(bytes: &[u8], tag: u16) -> Option<&[u8]> {
+    let directories = Directories::of(bytes)?;
+    let (first, n) = directories.entries(directories.first());
+    let entry = (0..n).map(|i| first + i * directories.entry()).find(|at| directories.u16(*at) == tag)?;
+    let size = match directories.u16(entry + 2) {
+        1 | TEXT | 6 | 7 => 1,
+        3 | 8 => 2,
+        5 | 10 | 12 | 16..=18 => 8,
+        _ => 4,
+    };
+    let word = if directories.is_big { 8 } else { 4 };
+    let value = entry + 4 + word;
+    let length = directories.place(entry + 4).saturating_mul(size);
+    let stored = bytes.get(if length <= word { value } else { directories.place(value) }..)?;
+    Some(&stored[..length.min(stored.len())])
+}
+
 /// Whether all texts in the directories of a file fit into it.
 pub(super) fn texts_fit(bytes: &[u8]) -> bool {
     Directories::of(bytes).is_none_or(|directories| {
@@ -55,9 +73,14 @@ impl<'a> Directories<'a> {
         Some(Self { bytes, order, is_big: order.i16_at(bytes, 2) == 43 })
     }
 
+    /// Place of the first directory.
+    fn first(&self) -> usize {
+        self.place(if self.is_big { 8 } else { 4 })
+    }
+
     /// Places of the entries of each directory.
     fn all(&self) -> Vec<Vec<usize>> {
-        let (mut at, mut found) = (self.place(if self.is_big { 8 } else { 4 }), Vec::new());
+        let (mut at, mut found) = (self.first(), Vec::new());
         while found.len() < MOST {
             let (first, n) = self.entries(at);
             if n == 0 {

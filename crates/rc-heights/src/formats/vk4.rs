@@ -26,41 +26,67 @@ const IMAGE_HEADER: usize = 28 + 768;
 
 const PICOMETRE: f64 = 1e-12;
 
+/// An image of heights: its number from 1, its place, and the lengths (m) of a pixel and of a digit.
+#[derive(Clone, Copy)]
+pub(super) struct Image {
+    number: usize,
+    place: usize,
+    spacing: [f64; 2],
+    unit: f64,
+}
+
 pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
+    let channel = |image: Image| {
+        let read = Box::new(move || image.read(bytes));
+        Channel { name: image.name(), is_height: true, read }
+    };
+    Ok(images(bytes)?.into_iter().map(channel).collect())
+}
+
+/// The images of heights in a file.
+pub(super) fn images(bytes: &[u8]) -> Result<Vec<Image>, FormatError> {
+    if !MARKS.iter().any(|mark| bytes.starts_with(mark)) {
+        return Err(FormatError::Mark { format: Format::Vk4, expected: "it must begin with VK4_" });
+    }
     let file = Places::new(bytes, Format::Vk4);
     let conditions = Places::new(file.rest(file.size(TABLE)?), Format::Vk4);
     let length = |at| Ok::<_, FormatError>(conditions.size(at)? as f64 * PICOMETRE);
     let (spacing, unit) = ([length(168)?, length(172)?], length(176)?);
     let unit = factor(Format::Vk4, "length of a digit along z", unit)?;
-    let mut channels = Vec::new();
-    for (i, at) in HEIGHTS.into_iter().enumerate() {
-        // A place of 0 means that the file does not have this image.
+    let mut images = Vec::new();
+    for (number, at) in (1..).zip(HEIGHTS) {
         let place = file.size(at)?;
+        // A place of 0 means that the file does not have this image.
         if place != 0 {
-            channels.push(Channel {
-                name: if i == 0 { "Height".to_owned() } else { format!("Height {}", i + 1) },
-                is_height: true,
-                read: Box::new(move || read(Places::new(file.rest(place), Format::Vk4), spacing, unit)),
-            });
+            images.push(Image { number, place, spacing, unit });
         }
     }
-    Ok(channels)
+    Ok(images)
 }
 
-fn read(image: Places<'_>, spacing: [f64; 2], unit: f64) -> Result<HeightMap, FormatError> {
-    let grid = Grid::new(image.size(0)?, image.size(4)?)?;
-    let number = match image.size(8)? {
-        8 => Number::U8,
-        16 => Number::U16,
-        32 => Number::U32,
-        other => return Err(refused(Format::Vk4, "bits of a height", &other, "8, 16 or 32")),
-    };
-    if image.size(12)? != 0 {
-        let what = "compressed heights".to_owned();
-        return Err(FormatError::Unsupported { format: Format::Vk4, what, cure: "save them without compression" });
+impl Image {
+    pub(super) fn name(&self) -> String {
+        if self.number == 1 { "Height".to_owned() } else { format!("Height {}", self.number) }
     }
-    let sides = sides(Format::Vk4, ["length of a pixel along x", "length of a pixel along y"], grid, spacing)?;
-    let mut values = number.values(image.rest(IMAGE_HEADER), grid)?;
-    scale(&mut values, unit);
-    Ok(map(grid, values, true, Some(sides)))
+
+    /// Reads the image from the bytes of its file.
+    pub(super) fn read(&self, bytes: &[u8]) -> Result<HeightMap, FormatError> {
+        let image = Places::new(Places::new(bytes, Format::Vk4).rest(self.place), Format::Vk4);
+        let grid = Grid::new(image.size(0)?, image.size(4)?)?;
+        let number = match image.size(8)? {
+            8 => Number::U8,
+            16 => Number::U16,
+            32 => Number::U32,
+            other => return Err(refused(Format::Vk4, "bits of a height", &other, "8, 16 or 32")),
+        };
+        if image.size(12)? != 0 {
+            let what = "compressed heights".to_owned();
+            return Err(FormatError::Unsupported { format: Format::Vk4, what, cure: "save them without compression" });
+        }
+        let fields = ["length of a pixel along x", "length of a pixel along y"];
+        let sides = sides(Format::Vk4, fields, grid, self.spacing)?;
+        let mut values = number.values(image.rest(IMAGE_HEADER), grid)?;
+        scale(&mut values, self.unit);
+        Ok(map(grid, values, true, Some(sides)))
+    }
 }

@@ -1,7 +1,7 @@
 //! ISO 5436-2 (now ISO 25178-72) files.
 //!
-//! The format is a zip archive with `main.xml`, heights as binary numbers, and a mask of measured points. Lengths are
-//! in metres. The checksums of the archive are verified. The MD5 sums in it are not.
+//! The format is a zip archive with `main.xml`, heights as binary numbers, and a mask of measured points. Few heights
+//! may be in `main.xml`, where an empty element is a missing point. Lengths are in metres. The checksums of the archive are verified. The MD5 sums in it are not.
 
 use std::io::{Cursor, Read as _};
 
@@ -17,8 +17,11 @@ use super::fields::{factor, positive, refused, shown_as_line};
 use super::limit;
 use crate::{Format, FormatError, HeightMap, Unit};
 
-/// Maximum length of `main.xml`. It does not contain heights.
-const LONGEST_XML: u64 = 16 << 20;
+/// Maximum length of `main.xml`, which may contain heights.
+const LONGEST_XML: u64 = 256 << 20;
+
+/// Bytes of memory for a byte of `main.xml` of the shortest elements.
+const XML_MEMORY: u64 = 24;
 
 /// Maximum number of bytes that deflate makes of one byte. Claims beyond that are false.
 const MOST_INFLATION: u64 = 1032;
@@ -32,14 +35,22 @@ pub(super) fn channels(bytes: &[u8], max_bytes: u64) -> Vec<Channel<'_>> {
 fn parse(bytes: &[u8], max_bytes: u64) -> Result<HeightMap, FormatError> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|cause| container(&cause))?;
     let folder = folder_of(&super::archive::names(&archive), "main.xml");
-    let xml = member(&mut archive, &format!("{folder}main.xml"), LONGEST_XML)?;
+    let xml = xml(&mut archive, &format!("{folder}main.xml"), max_bytes)?;
     let xml = String::from_utf8_lossy(&xml);
     let document = Document::parse(&xml).map_err(|cause| container(&cause))?;
     let root = document.root_element();
     let (number, increments, offset) = axes(root)?;
     let grid = grid(root)?;
+    let sides = Some([increments[0] * grid.nx() as f64, increments[1] * grid.ny() as f64]);
+    let map = |mut values: Vec<f64>| {
+        for value in &mut values {
+            // In ISO 5436-2, infinite values mark missing points too.
+            *value = if value.is_infinite() { f64::NAN } else { *value * increments[2] + offset };
+        }
+        HeightMap::new(field(grid, values), Unit::Metre, sides, Unit::Metre)
+    };
     let Ok(link) = text(root, "DataLink", "PointDataLink") else {
-        return Err(unsupported("heights inside main.xml", "save them in binary form"));
+        return listed(root, grid).map(map);
     };
     let needed = number.bytes_of(grid);
     let found = (bytes.len() as u64).saturating_mul(MOST_INFLATION);
@@ -51,12 +62,31 @@ fn parse(bytes: &[u8], max_bytes: u64) -> Result<HeightMap, FormatError> {
     if let Ok(link) = text(root, "DataLink", "ValidPointsLink") {
         mask(&mut values, &member(&mut archive, &format!("{folder}{link}"), needed)?)?;
     }
-    for value in &mut values {
-        // In ISO 5436-2, infinite values mark missing points too.
-        *value = if value.is_infinite() { f64::NAN } else { *value * increments[2] + offset };
+    Ok(map(values))
+}
+
+/// The bytes of `main.xml`.
+fn xml(archive: &mut Archive<'_>, name: &str, max_bytes: u64) -> Result<Vec<u8>, FormatError> {
+    let size = archive.by_name(name).map_err(|cause| container(&format_args!("{name}: {cause}")))?.size();
+    limit::check(size.saturating_mul(XML_MEMORY), max_bytes)?;
+    member(archive, name, size.min(LONGEST_XML))
+}
+
+/// The heights in `main.xml`, in the order of the binary numbers.
+fn listed(root: Node<'_, '_>, grid: Grid) -> Result<Vec<f64>, FormatError> {
+    let list = root.descendants().find(|node| is_called("DataList", node));
+    let list = list.ok_or(FormatError::Missing { format: Format::X3p, field: "PointDataLink or DataList" })?;
+    let mut values = Vec::new();
+    for datum in list.children().filter(|node| is_called("Datum", node)) {
+        let text = datum.text().unwrap_or_default().trim();
+        let value = if text.is_empty() { Ok(f64::NAN) } else { text.parse() };
+        values.push(value.map_err(|_| refused(Format::X3p, "Datum", text, "a height, or empty"))?);
     }
-    let sides = Some([increments[0] * grid.nx() as f64, increments[1] * grid.ny() as f64]);
-    Ok(HeightMap::new(field(grid, values), Unit::Metre, sides, Unit::Metre))
+    if values.len() == grid.len() {
+        return Ok(values);
+    }
+    let found = format!("{} elements for {grid} points", values.len());
+    Err(refused(Format::X3p, "DataList", &found, "an element Datum for each point"))
 }
 
 /// Applies a mask with a bit for each point, lowest bit first. Points whose bit is 0 were not measured.
@@ -124,11 +154,14 @@ fn grid(root: Node<'_, '_>) -> Result<Grid, FormatError> {
 
 /// The text of `field` in the first element called `parent`.
 fn text<'a>(root: Node<'a, '_>, parent: &str, field: &'static str) -> Result<&'a str, FormatError> {
-    let named = |name: &str, node: &Node<'_, '_>| node.is_element() && node.tag_name().name() == name;
-    let parent = root.descendants().find(|node| named(parent, node));
-    let field_of = parent.and_then(|parent| parent.children().find(|node| named(field, node)));
+    let parent = root.descendants().find(|node| is_called(parent, node));
+    let field_of = parent.and_then(|parent| parent.children().find(|node| is_called(field, node)));
     let text = field_of.and_then(|node| node.text()).map(str::trim).filter(|text| !text.is_empty());
     text.ok_or(FormatError::Missing { format: Format::X3p, field })
+}
+
+fn is_called(name: &str, node: &Node<'_, '_>) -> bool {
+    node.is_element() && node.tag_name().name() == name
 }
 
 fn container(reason: &(impl ToString + ?Sized)) -> FormatError {

@@ -125,10 +125,19 @@ fn containers() -> Vec<(&'static str, Vec<u8>)> {
             "map.x3p.gz",
             gzip(&zipped(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &heights)], CompressionMethod::Stored)),
         ),
+        ("map.vk7", vk7()),
         ("map.png", png()),
         ("map.tif", tiff()),
         ("map.mat", mat()),
     ]
+}
+
+/// An image of bytes in an archive.
+fn vk7() -> Vec<u8> {
+    let image = build_instruments::vk4(8, 1);
+    let side = (SIDE as u32).to_le_bytes();
+    let image = with(image, &[(264, &side), (268, &side)]);
+    crate::build_microscopes::vk6(b"VK7", &[image, vec![0; SIDE * SIDE]].concat())
 }
 
 fn png() -> Vec<u8> {
@@ -183,6 +192,19 @@ fn packed_numbers_stay_within_the_limit() {
 }
 
 #[test]
+fn heights_in_a_packed_xml_text_stay_within_the_limit() {
+    let dir = tempfile::tempdir().expect("a temporary folder");
+    let path = dir.path().join("list.x3p");
+    let size = format!("<SizeX>{SIDE}</SizeX><SizeY>100</SizeY><SizeZ>1</SizeZ>");
+    let list = format!("<DataList>{}</DataList>", "<Datum>1</Datum>".repeat(SIDE * 100));
+    let xml = build::x3p_xml("D", &size, "").replace("<PointDataLink>bindata/data.bin</PointDataLink>", "");
+    let xml = xml.replace("<DataLink>", &format!("{list}<DataLink>"));
+    std::fs::write(&path, zipped(&[("main.xml", xml.as_bytes())], CompressionMethod::Deflated)).expect("a file");
+    assert_is_refused(&path);
+    assert_eq!(read_within(&path, 1 << 30), Ok((SIDE, 100)));
+}
+
+#[test]
 fn a_classic_netcdf_file_that_promises_a_large_map_is_refused() {
     let words = |words: &[u32]| words.iter().flat_map(|word| word.to_be_bytes()).collect::<Vec<u8>>();
     // Dimensions x and y, then a variable z of both with doubles, whose values are missing.
@@ -211,7 +233,9 @@ fn a_classic_netcdf_file_that_promises_a_large_map_is_refused() {
 #[test]
 fn every_file_is_read_within_a_limit_that_is_a_multiple_of_its_size() {
     let dir = tempfile::tempdir().expect("a temporary folder");
-    for (name, format, bytes) in build::all().into_iter().chain(build_instruments::all()) {
+    for (name, format, bytes) in
+        build::all().into_iter().chain(build_instruments::all()).chain(crate::build_microscopes::all())
+    {
         let path = dir.path().join("map");
         std::fs::write(&path, &bytes).expect("a file");
         let params = within(64 * bytes.len() as u64 + 4096);

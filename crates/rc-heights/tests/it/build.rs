@@ -193,6 +193,15 @@ pub(crate) fn x3p(method: CompressionMethod) -> Vec<u8> {
     zipped(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &data), ("bindata/valid.bin", &[0b0010_1111])], method)
 }
 
+/// Heights in `main.xml`, where - is a missing point.
+pub(crate) fn x3p_list(heights: &str) -> Vec<u8> {
+    let link = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>";
+    let datum = |word| if word == "-" { "<Datum/>".to_owned() } else { format!("\n<Datum> {word} </Datum>") };
+    let list: String = heights.split(' ').map(datum).collect();
+    let xml = x3p_xml("D", X3P_SIZE, "").replace(link, &format!("<DataList>{list}</DataList>"));
+    zipped(&[("main.xml", xml.as_bytes())], CompressionMethod::Deflated)
+}
+
 /// 16-bit grayscale, from the encoder of the png crate.
 pub(crate) fn png(colour: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
@@ -310,5 +319,7 @@ pub(crate) fn all() -> Vec<(&'static str, Format, Vec<u8>)> {
         ("columns", Format::Xyz, written("columns.csv")),
     ];
     all.extend(crate::build_instruments::all());
+    all.extend(crate::build_microscopes::all());
+    all.push(("x3p with a list", Format::X3p, x3p_list("1 2 3 4 - 6")));
     all
 }

@@ -57,6 +57,7 @@ fn missing_points_are_missing_in_every_format_that_has_them() {
         (Format::Sdf, build::sdf_text("1 2 3\r\n4 BAD 6")),
         (Format::Sdf, build::sdf_binary("ISO-1.0", 5, &i16s)),
         (Format::X3p, build::x3p(CompressionMethod::Deflated)),
+        (Format::X3p, build::x3p_list("1 2 3 4 - 6")),
     ];
     for (format, bytes) in files {
         let map = read(&format.to_string(), &bytes, format);

@@ -119,7 +119,7 @@ fn built_files_of_every_instrument_are_the_same_map() {
 }
 
 /// Asserts heights of 1 to 6 nm, within the rounding of 32-bit floats.
-fn assert_map_rounded(name: &str, map: &HeightMap, sides: Option<[f64; 2]>) {
+pub(crate) fn assert_map_rounded(name: &str, map: &HeightMap, sides: Option<[f64; 2]>) {
     assert_eq!((map.heights.grid().nx(), map.heights.grid().ny()), (3, 2), "{name}");
     for (found, height) in map.heights.values().iter().zip(HEIGHTS) {
         assert!((found / (height * 1e-9) - 1.0).abs() < 1e-6, "{name}: {found:e}, expected {height} nm");

@@ -15,7 +15,9 @@ fn the_top_of_a_picture_is_the_last_row() {
             assert_eq!(is_reversed, name.contains("Gwyddion") || name.contains("UTF-16"), "{name}");
             continue;
         }
-        assert_eq!(is_reversed, format.first_row_is_top(), "{name}");
+        // The measurement is in other tags than the picture.
+        let is_top_first = format.first_row_is_top() && name != "tiff of Park";
+        assert_eq!(is_reversed, is_top_first, "{name}");
         if map.heights.grid().len() == 6 {
             let is_lower_first = map.heights.at(0, 0) > map.heights.at(0, 1);
             assert_eq!(is_lower_first, is_reversed, "{name}: {:?}", map.heights.values());
