@@ -59,7 +59,8 @@ pub use error::{FormatError, ReadError};
 pub use formats::nc_writer as netcdf;
 pub use formats::{
     ChannelInfo, DEFAULT_MAX_BYTES, Format, Layout, LayoutError, Mask, MaskError, MatArray, ReadParams, channels,
-    channels_of, format_of, gsf, mat_arrays, may_have_sides, npy, of_points, parse, parse_with, read, read_with, text,
+    channels_of, format_of, gsf, has_profile, mat_arrays, may_have_sides, npy, of_points, parse, parse_with, read,
+    read_with, text,
 };
 pub use map::{BorderStep, HeightMap};
 pub use note::ReadNote;

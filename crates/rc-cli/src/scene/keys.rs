@@ -42,6 +42,13 @@ pub struct SurfaceKeys {
     /// .plu, .plux, .vk4, 16-bit .png or .tif.
     #[arg(long, value_name = "FILE")]
     pub heights: Option<PathBuf>,
+    /// Line contact of a profile in plane strain: lines x z, or z with --cell
+    ///
+    /// The heights are constant along y. The profile repeats after its length, which is the number of points times their
+    /// step.
+    #[arg(long)]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub line: bool,
     /// Fourier coefficients: lines kx ky Re Im (waves per cell; m)
     #[arg(long, value_name = "FILE", help_heading = help::FILES)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -401,6 +408,7 @@ impl SurfaceKeys {
             channel: self.channel.clone(),
             layout: self.layout,
             row_is_map: self.cell.is_some() && self.cell_y.is_some(),
+            is_profile: self.line,
             missing: self.missing.as_ref().map(|marks| marks.0.clone()).unwrap_or_default(),
             mask: self.mask.unwrap_or_default(),
             max_bytes: read_limit(self.read_limit),

@@ -29,6 +29,7 @@ pub(super) fn features(problem: &ContactProblem<'_>, params: &SolveParams) -> Ve
         (Feature::OblongElements, !has_squares(heights.grid())),
         (Feature::UnevenGrid, (has_border || has_ranks) && is_uneven(problem, params)),
         (Feature::BorderLevel, has_border),
+        (Feature::Line, heights.grid().ny() == 1 && problem.boundary() == Boundary::Periodic),
         (Feature::Ranks, has_ranks),
         (Feature::Checkpoint, problem.checkpoint.is_some()),
     ];
