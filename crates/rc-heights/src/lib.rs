@@ -49,6 +49,7 @@ mod map;
 mod note;
 pub mod pairs;
 mod parameters;
+mod profile_parameters;
 pub mod spectrum;
 mod statistics;
 pub mod suspicion;
@@ -65,6 +66,7 @@ pub use formats::{
 pub use map::{BorderStep, HeightMap};
 pub use note::ReadNote;
 pub use parameters::AreaParameters;
+pub use profile_parameters::ProfileParameters;
 pub use statistics::MapStatistics;
 pub use treat::{
     Crop, Edges, Effect, Fill, Flip, Level, MOST_COPIES, Periodic, Repeat, SAME_LENGTH, TreatError, Treatment, apply,

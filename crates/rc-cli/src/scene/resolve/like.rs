@@ -25,7 +25,7 @@ const ELEMENTS_PER_WAVE: f64 = 4.0;
 /// [`CliError::Input`].
 pub(super) fn like(keys: SurfaceKeys, like: &Path) -> Result<SurfaceSetup, CliError> {
     match Profile::read(like, &keys)? {
-        Some(profile) => of_profile(keys, like, &profile),
+        Some(profile) => of_profile(keys, like, &profile.complete(like)?),
         None => twin(keys, like),
     }
 }
@@ -53,7 +53,7 @@ fn of_profile(keys: SurfaceKeys, like: &Path, profile: &Profile) -> Result<Surfa
     let keys = SurfaceKeys { cell: Some(side), heights_like: None, unit, height_unit, height_scale, ..keys };
     let keys = SurfaceKeys { missing, mask, channel, layout, ..keys };
     let mut setup = realisation(keys, (like.to_owned(), table), cell, grid)?;
-    if profile.is_assumed {
+    if profile.is_assumed() {
         setup.assumed.push("metres for the profile, which names no unit; --unit says otherwise".to_owned());
     }
     Ok(setup)
