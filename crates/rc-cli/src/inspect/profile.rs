@@ -245,7 +245,10 @@ impl ProfileRecord {
         let metres = |value| engineering(value, "m");
         let Unfiltered { pa, pq, pz, psk, pku, pp, pv, pt } = self.unfiltered;
         let Filtered { ra, rq, rz, rsk, rku, rp, rv, rt } = self.filtered;
-        let heights = |[a, q, p, v, z, t]: [f64; 6]| [a, q, p, v, z, t].map(metres).join(", ");
+        let heights = |kind: &str, values: [f64; 6]| {
+            let named = |(name, value): (char, f64)| format!("{kind}{name} {}", metres(value));
+            ['a', 'q', 'p', 'v', 'z', 't'].into_iter().zip(values).map(named).collect::<Vec<_>>().join(", ")
+        };
         let missing = if self.missing > 0 { format!(", {} missing", self.missing) } else { String::new() };
         let mut lines = vec![
             (
@@ -259,12 +262,12 @@ impl ProfileRecord {
             ),
             ("heights", format!("from {} to {}, mean {}", metres(self.h_min), metres(self.h_max), metres(self.mean))),
             ("rms slope", format!("{} (differences of neighbours)", digits(self.rms_slope, 4))),
-            ("Pa, Pq, Pp, Pv, Pz, Pt", heights([pa, pq, pp, pv, pz, pt])),
+            ("P parameters", heights("P", [pa, pq, pp, pv, pz, pt])),
             ("Psk, Pku", format!("{}, {}", digits(psk, 4), digits(pku, 4))),
         ];
         if let Some(filters) = self.filters() {
             lines.push(("filters", filters));
-            lines.push(("Ra, Rq, Rp, Rv, Rz, Rt", heights([ra, rq, rp, rv, rz, rt])));
+            lines.push(("R parameters", heights("R", [ra, rq, rp, rv, rz, rt])));
             lines.push(("Rsk, Rku", format!("{}, {}", digits(rsk, 4), digits(rku, 4))));
         }
         let note = "\nP: the whole profile about its mean, without a filter (ISO 21920-2). ";

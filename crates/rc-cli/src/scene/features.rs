@@ -31,19 +31,6 @@ pub(crate) fn check(keys: &ContactKeys, more: impl IntoIterator<Item = Feature>)
     check_all(&features, keys.method)
 }
 
-/// Refuses what a line contact cannot be combined with.
-///
-/// # Errors
-/// [`CliError::Input`].
-pub(crate) fn check_line(keys: &ContactKeys) -> Result<(), CliError> {
-    if keys.force.is_some() {
-        return Err(CliError::input(
-            "force: a line contact has a force per length; give pressure (Pa), which is that force divided by the length of the profile",
-        ));
-    }
-    check(keys, [Feature::Line])
-}
-
 /// Refuses features that cannot be combined.
 ///
 /// # Errors

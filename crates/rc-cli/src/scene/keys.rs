@@ -94,7 +94,7 @@ pub struct SurfaceKeys {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub missing: Option<Marks>,
     /// Masked points of a .gwy: use (missing) or ignore [default: use]
-    #[arg(long, value_name = "use|ignore", help_heading = help::FILES)]
+    #[arg(long, value_name = "use|ignore", help_heading = help::FILES, hide_short_help = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mask: Option<Mask>,
     /// Channel of a file with several [default: the first with heights]

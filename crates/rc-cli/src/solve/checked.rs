@@ -36,7 +36,7 @@ impl CheckedScene {
     pub fn new(surface: SurfaceKeys, contact: ContactKeys) -> Result<Self, CliError> {
         resolve::check_size_and_material(&surface, &contact)?;
         if surface.line {
-            features::check_line(&contact)?;
+            features::check(&contact, [Feature::Line])?;
         }
         Self::with_surface(contact, surface.heights.is_some() || surface.like.is_some(), || resolve::surface(surface))
     }
@@ -53,7 +53,7 @@ impl CheckedScene {
         contact: ContactKeys,
     ) -> Result<Self, CliError> {
         if surface.line {
-            features::check_line(&contact)?;
+            features::check(&contact, [Feature::Line])?;
         }
         let (surface, assumed) = surface.of_map(sides, points)?;
         resolve::check_cell_and_material(&surface, &contact)?;

@@ -126,6 +126,11 @@ fn object(bytes: &[u8]) -> Result<Object<'_>, FormatError> {
     let units = [header.text::<16>(180)?, header.text::<16>(196)?, header.text::<16>(212)?];
     let [x, y, z] = [metres(&units[0]), metres(&units[1]), metres(&units[2])];
     let sides = match (x, y) {
+        // A profile has no axis y.
+        (Some(x), _) if header.u16(18)? == PROFILE && grid.ny() == 1 => {
+            let spacing = [x * header.f32(120)?; 2];
+            Some(sides(Format::Sur, ["spacing along x"; 2], grid, spacing)?)
+        }
         (Some(x), Some(y)) => {
             let spacing = [x * header.f32(120)?, y * header.f32(124)?];
             Some(sides(Format::Sur, ["spacing along x", "spacing along y"], grid, spacing)?)

@@ -47,6 +47,9 @@ pub fn surface(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
     let map = heights::read(&path, &keys.read_params(), keys.scales())?;
     let CellOfMap { cell, cell_y, assumed } =
         CellOfMap::of(&path, &map, [keys.cell, if keys.line { keys.cell } else { keys.cell_y }])?;
+    if keys.line && cell.is_none() {
+        return Err(CliError::in_file(&path, "a profile without places; give cell (m), the length of the profile"));
+    }
     let setup = surface_in_cell(SurfaceKeys { cell, cell_y, ..keys })?;
     Ok(SurfaceSetup { assumed, held: Arc::new(Mutex::new(Some(map))), ..setup })
 }
