@@ -177,9 +177,10 @@ fn roughness(
         return Ok((smooth[end..smooth.len() - end].to_vec(), 1));
     };
     let waviness = gaussian_mean_line(&smooth, lambda / spacing);
-    let end = (0.5 * lambda / spacing).ceil() as usize;
+    let end = (0.5 * lambda / spacing * (1.0 - 1e-9)).ceil() as usize;
     let kept: Vec<f64> = smooth.iter().zip(&waviness).map(|(height, line)| height - line).collect();
-    let sections = ((kept.len() - 2 * end) as f64 * spacing / lambda) as usize;
+    // A whole number of sections may have a rounding error.
+    let sections = ((kept.len() - 2 * end) as f64 * spacing / lambda * (1.0 + 1e-9)) as usize;
     Ok((kept[end..kept.len() - end].to_vec(), sections.max(1)))
 }
 

@@ -56,7 +56,7 @@ fn half_of_a_wave_touches_in_every_file_of_the_profile() {
         }
     }
     solved(&place, "wave.csv", &["--out", "r"]);
-    assert_eq!(text(&place.bytes("r/pressure.npy")).contains("(1, 1024)"), true);
+    assert!(text(&place.bytes("r/pressure.npy")[..128]).contains("(1, 1024, )"), "one row");
     let again = place.run(&["solve", "r", "--quiet", "--out", "again"]);
     assert_solved(&again);
     assert_eq!(place.bytes("r/pressure.npy"), place.bytes("again/pressure.npy"));
@@ -84,7 +84,7 @@ fn what_a_line_contact_has_not_is_refused() {
         ("wave.csv", &["--cell-y", "1mm"], "no side along y"),
         ("wave.csv", &["--cell", "2mm"], "cell says 2 mm"),
         ("bare.txt", &[], "a profile without places; give cell (m)"),
-        ("uneven.csv", &[], "from point 2 to 3 it is 3, and in the mean 1.66667"),
+        ("uneven.csv", &[], "from point 1 to 2 it is 1, and in the mean 1.66667"),
         ("hole.csv", &[], "column 1 (from 0) is NaN"),
         ("map.npy", &["--cell", "1mm"], "a map of 8 x 8 points, not a profile"),
         ("none.csv", &[], "none.csv"),
@@ -104,9 +104,10 @@ fn what_a_line_contact_has_not_is_refused() {
 #[test]
 fn a_profile_has_the_parameters_of_the_standard_with_and_without_filters() {
     let place = Place::new();
-    // A wave of 1 µm on 0.8 mm, and one of 50 nm on 20 µm, over 8 mm.
+    // A wave of 1 µm on 0.8 mm, and one of 50 nm on 20 µm, over 8.2 mm. The
+    // part between half of λc = 0.2 mm from both ends has whole waves. The other parts miss a quarter of the long wave.
     let wave = |x: f64| 1e-6 * (TAU * x / 0.8e-3).cos() + 50e-9 * (TAU * x / 20e-6).cos();
-    let n = 8000;
+    let n = 8200;
     let line = |i: u32| format!("{:.3};{:.6}\n", f64::from(i), 1e9 * wave(1e-6 * f64::from(i)));
     place.write("waves.csv", "x [um];z [nm]\n".to_owned() + &(0..n).map(line).collect::<String>());
     let inspect = |more: &[&str]| {
@@ -115,7 +116,7 @@ fn a_profile_has_the_parameters_of_the_standard_with_and_without_filters() {
         serde_json::from_slice::<Value>(&output.stdout).expect("valid JSON")
     };
     let plain = inspect(&[]);
-    assert_close("Rq", number(&plain, "Rq"), (0.5e-12_f64 + 0.5 * 2.5e-15).sqrt(), 1e-4);
+    assert_close("Rq", number(&plain, "Rq"), (0.5e-12_f64 + 0.5 * 2.5e-15).sqrt(), 1e-3);
     assert_eq!(plain["Ra"], plain["Pa"]);
     // The short wave keeps 1 - 2^-(λc/λ)² of its amplitude, which is all, and the long one 1 - 2^-(1/16).
     let fine = inspect(&["--lambda-c", "0.2mm", "--psd-out", "psd.csv", "--out", "look"]);
@@ -123,14 +124,14 @@ fn a_profile_has_the_parameters_of_the_standard_with_and_without_filters() {
     let expected = (0.5 * (kept * 1e-6_f64).powi(2) + 0.5 * 50e-9_f64.powi(2)).sqrt();
     assert_close("Rq", number(&fine, "Rq"), expected, 2e-3);
     assert_eq!(fine["Pq"], plain["Pq"]);
-    assert_close("evaluation length", number(&fine, "evaluation_length"), 7.8e-3, 1e-3);
-    assert_eq!(fine["sections"], 39);
+    assert_close("evaluation length", number(&fine, "evaluation_length"), 8e-3, 1e-9);
+    assert_eq!(fine["sections"], 40);
     // λs of 80 µm takes the short wave away.
     let smooth = inspect(&["--lambda-s", "80um"]);
     let left = 0.5_f64.powf((0.08_f64 / 0.8).powi(2));
     assert_close("Rq", number(&smooth, "Rq"), left * 1e-6 / 2.0_f64.sqrt(), 2e-3);
     for (key, value) in [("Ra", 2.0 / PI), ("Rz", 2.0)] {
-        assert_close(key, number(&smooth, key), left * 1e-6 * value, 2e-3);
+        assert_close(key, number(&smooth, key), left * 1e-6 * value, 5e-3);
     }
     assert_eq!(place.bytes("psd.csv"), place.bytes("look/psd.csv"));
     let surface = place.run(&["surface", "--psd", "psd.csv", "--cell", "0.5mm", "--grid", "1024", "--out", "surface"]);
