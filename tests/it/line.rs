@@ -147,7 +147,6 @@ fn error_bars_hold_the_change_to_a_fine_grid() {
         }
         let sizes = squares.map(|sum: f64| (sum / all as f64).sqrt());
         let told = format!("{}: {misses:?} of {all} missed, rms of change/bar {sizes:.3?}", kernel.name());
-        println!("{told}");
         assert!(misses.iter().all(|missed| 20 * missed <= all), "{told}");
         assert!(sizes.iter().all(|size| *size > 0.1), "{told}");
     }

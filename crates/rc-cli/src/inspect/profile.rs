@@ -276,7 +276,10 @@ impl ProfileRecord {
             Some(_) => "R: after the filters; Rp, Rv and Rz are means over the sections.\n",
             None => "Give --lambda-c (and --lambda-s) for the R parameters of the filtered profile.\n",
         };
-        aligned(&lines) + note + more + &self.notes.iter().map(|note| format!("note: {note}\n")).collect::<String>()
+        aligned(&lines)
+            + note
+            + more
+            + &self.notes.iter().map(|note| format!("note: {note}\n")).collect::<Vec<_>>().concat()
     }
 
     /// The filters and what they leave.

@@ -18,7 +18,7 @@ fn height(i: u32) -> f64 {
 /// Lines x z of the wave, in m divided by these units.
 fn lines(titles: &str, units: [f64; 2]) -> String {
     let line = |i: u32| format!("{:.9},{:.9}\n", 1e-3 * f64::from(i) / f64::from(N) / units[0], height(i) / units[1]);
-    titles.to_owned() + &(0..N).map(line).collect::<String>()
+    titles.to_owned() + &(0..N).map(line).collect::<Vec<_>>().concat()
 }
 
 /// Half of the load of full contact, π E* h/λ.
@@ -43,7 +43,7 @@ fn number(record: &Value, key: &str) -> f64 {
 fn half_of_a_wave_touches_in_every_file_of_the_profile() {
     let place = Place::new();
     place.write("wave.csv", lines("x (um),z (nm)\n", [1e-6, 1e-9]));
-    place.write("bare.txt", (0..N).map(|i| format!("{:e}\n", height(i))).collect::<String>());
+    place.write("bare.txt", (0..N).map(|i| format!("{:e}\n", height(i))).collect::<Vec<_>>().concat());
     let heights: Vec<u8> = (0..N).flat_map(|i| height(i).to_le_bytes()).collect();
     place.write("wave.npy", npy("<f8", false, "(1024,)", &heights));
     let cell = ["--cell", "1mm"];
@@ -109,7 +109,7 @@ fn a_profile_has_the_parameters_of_the_standard_with_and_without_filters() {
     let wave = |x: f64| 1e-6 * (TAU * x / 0.8e-3).cos() + 50e-9 * (TAU * x / 20e-6).cos();
     let n = 8200;
     let line = |i: u32| format!("{:.3};{:.6}\n", f64::from(i), 1e9 * wave(1e-6 * f64::from(i)));
-    place.write("waves.csv", "x [um];z [nm]\n".to_owned() + &(0..n).map(line).collect::<String>());
+    place.write("waves.csv", "x [um];z [nm]\n".to_owned() + &(0..n).map(line).collect::<Vec<_>>().concat());
     let inspect = |more: &[&str]| {
         let output = place.run(&[&["inspect", "waves.csv", "--json"], more].concat());
         assert_solved(&output);
@@ -149,7 +149,7 @@ fn a_profile_has_the_parameters_of_the_standard_with_and_without_filters() {
 fn holes_and_units_of_a_profile_are_told() {
     let place = Place::new();
     let line = |i: u32| if i == 7 { format!("{i},\n") } else { format!("{i},{}\n", i * i % 11) };
-    place.write("hole.csv", "x (um),z (nm)\n".to_owned() + &(0..40).rev().map(line).collect::<String>());
+    place.write("hole.csv", "x (um),z (nm)\n".to_owned() + &(0..40).rev().map(line).collect::<Vec<_>>().concat());
     let output = place.run(&["inspect", "hole.csv"]);
     assert_solved(&output);
     let told = text(&output.stdout);

@@ -24,6 +24,9 @@ const ENOUGH: usize = 50;
 /// Largest unit of the last digit of such places, in steps.
 const COARSEST: f64 = 0.7;
 
+/// Digits behind the point of a number that is not rounded.
+const EXACT: usize = 17;
+
 /// Number of lines of a text by which a profile is recognised.
 const LOOKED_AT: usize = 4;
 
@@ -75,12 +78,11 @@ pub(super) fn parse(bytes: &[u8], missing: &[f64]) -> Result<HeightMap, FormatEr
     Ok(map)
 }
 
+/// Places, each with its number of digits behind the point, and heights.
+type Points = (Vec<(f64, usize)>, Vec<f64>);
+
 /// The places and heights of the text, which are in these of `width` columns.
-fn of_columns(
-    text: &str,
-    heading: &Heading,
-    (width, columns): (usize, [usize; 2]),
-) -> Result<(Vec<(f64, usize)>, Vec<f64>), FormatError> {
+fn of_columns(text: &str, heading: &Heading, (width, columns): (usize, [usize; 2])) -> Result<Points, FormatError> {
     let (mut x, mut heights) = (Vec::new(), Vec::new());
     for (line, row) in data_lines(text, heading.first) {
         let (words, comma) = words(row);
@@ -117,7 +119,6 @@ fn row_of_heights(text: &str, heading: &Heading) -> Result<Vec<f64>, FormatError
 
 /// Number of digits behind the decimal point of a number. An exponent makes it that of an exact number.
 fn decimals(word: &str) -> usize {
-    const EXACT: usize = 17;
     if word.contains(['e', 'E', 'd', 'D']) {
         return EXACT;
     }
@@ -181,7 +182,6 @@ pub(super) fn of_array(values: Vec<f64>, [ny, nx]: [u64; 2]) -> Result<HeightMap
         if let Some(i) = pairs.iter().position(|[x, _]| !x.is_finite()) {
             return Err(FormatError::Irregular(format!("x of point {i} (from 0) is not finite")));
         }
-        const EXACT: usize = 17;
         let x = pairs.iter().map(|[x, _]| (*x, EXACT)).collect();
         return of_points(Some(x), pairs.iter().map(|[_, height]| *height).collect());
     }
@@ -265,7 +265,7 @@ mod tests {
     /// Steps of 0.156 with one digit behind the point are uneven, and even to their rounding.
     #[test]
     fn rounded_places_are_even() {
-        let text = |n: usize| (0..n).map(|i| format!("{:.1} {i}\n", 0.156 * i as f64)).collect::<String>();
+        let text = |n: usize| (0..n).map(|i| format!("{:.1} {i}\n", 0.156 * i as f64)).collect::<Vec<_>>().concat();
         let sides = read(&text(400)).sides.expect("sides");
         assert!((sides[0] / (400.0 * 0.156) - 1.0).abs() < 2e-3, "{sides:?}");
         assert!(parse(text(20).as_bytes(), &[]).is_err(), "too few to tell");

@@ -16,10 +16,9 @@ impl Level {
     fn n_terms(self, is_profile: bool) -> usize {
         match (self, is_profile) {
             (Self::Mean, _) => 1,
-            (Self::Plane, false) => 3,
-            (Self::Quadratic, false) => 6,
             (Self::Plane, true) => 2,
-            (Self::Quadratic, true) => 3,
+            (Self::Plane, false) | (Self::Quadratic, true) => 3,
+            (Self::Quadratic, false) => 6,
         }
     }
 }

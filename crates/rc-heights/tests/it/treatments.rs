@@ -307,7 +307,7 @@ fn profiles_are_levelled_filtered_and_mirrored_along_their_row() {
     assert_eq!((twice.heights.grid(), twice.sides), (Grid::new(400, 1).expect("a grid"), Some([4.0, 4.0])));
     assert!((0..200).all(|i| twice.heights.at(i, 0) == twice.heights.at(399 - i, 0)));
     let wave: fn(f64) -> f64 = |x| (TAU * 5.0 * x).cos();
-    let (half, _) = treated(profile(wave), Treatment::LowPass(0.2));
+    let (half, _) = treated(profile(wave), Treatment::LowPass { wavelength: 0.2 });
     for (kept, height) in half.heights.values().iter().zip(profile(wave).heights.values()) {
         assert!((kept - 0.5 * height).abs() < 1e-6, "{kept} for {height}");
     }
