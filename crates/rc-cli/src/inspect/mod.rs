@@ -7,6 +7,7 @@ pub(crate) mod text;
 mod pictures;
 mod profile;
 mod profile_pictures;
+mod profile_row;
 
 use std::path::{Path, PathBuf};
 

@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::args::InspectArgs;
 use super::profile_pictures;
+use super::profile_row::ProfileRow;
 use crate::error::CliError;
 use crate::scene::profile::Profile;
 use crate::text::{aligned, written};
@@ -30,7 +31,7 @@ pub(super) struct ProfileRecord {
     points: usize,
     missing: usize,
     length: f64,
-    pub(super) spacing: f64,
+    spacing: f64,
     mean: f64,
     h_min: f64,
     h_max: f64,
@@ -45,20 +46,9 @@ pub(super) struct ProfileRecord {
     filtered: Filtered,
     #[serde(flatten)]
     unfiltered: Unfiltered,
-    pub(super) spectrum: Vec<ProfileRow>,
+    spectrum: Vec<ProfileRow>,
     notes: Vec<String>,
     warnings: Vec<Warning>,
-}
-
-/// A row of the spectra.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(super) struct ProfileRow {
-    /// q (rad/m).
-    pub(super) wavenumber: f64,
-    /// C1 (m³) of the profile: ⟨h²⟩ = 2 ∫ C1 dq over q > 0.
-    pub(super) psd_profile: f64,
-    /// C (m⁴) of the isotropic surface with such profiles.
-    pub(super) psd: f64,
 }
 
 /// The parameters after the filters, if they are given.
@@ -117,7 +107,7 @@ pub(super) fn shown(args: &InspectArgs, profile: &Profile) -> Result<String, Cli
     if let Some(folder) = &args.out {
         files::check_folder(folder)?;
         let mut staged = Staged::new(folder)?;
-        profile_pictures::add(&mut staged, &profile.heights, &record)?;
+        profile_pictures::add(&mut staged, (&profile.heights, profile.spacing), &record.spectrum)?;
         staged.add(PSD_FILE, |path| pairs::write(path, PSD_TITLES, &record.psd()))?;
         staged.commit()?;
     }

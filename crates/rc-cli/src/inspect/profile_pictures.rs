@@ -6,7 +6,7 @@ use rc_core::quantity::Scale;
 use rc_plot::{Area, LinePlot, LineStyle, Picture, PictureError, Series, draw_lines, save_png, save_svg};
 use rc_sweep::files::{FileError, Staged};
 
-use super::profile::ProfileRecord;
+use super::profile_row::ProfileRow;
 
 const BLUE: RGBColor = RGBColor(38, 92, 158);
 
@@ -16,13 +16,17 @@ const TEXT: f64 = 26.0;
 /// Parts of a long profile of which a picture shows the lowest and the highest point.
 const MOST: usize = 2000;
 
-/// Adds `profile` and `spectrum` as PNG and SVG.
+/// Adds `profile` and `spectrum` as PNG and SVG, of heights (m) at this spacing (m).
 ///
 /// # Errors
 /// [`FileError::Write`].
-pub(super) fn add(staged: &mut Staged, heights: &[f64], record: &ProfileRecord) -> Result<(), FileError> {
-    let profile = Lines { title: "Profile", points: outline(heights, record.spacing), of: Of::Heights };
-    let rows = record.spectrum.iter().filter(|row| row.psd_profile > 0.0);
+pub(super) fn add(
+    staged: &mut Staged,
+    (heights, spacing): (&[f64], f64),
+    spectrum: &[ProfileRow],
+) -> Result<(), FileError> {
+    let profile = Lines { title: "Profile", points: outline(heights, spacing), of: Of::Heights };
+    let rows = spectrum.iter().filter(|row| row.psd_profile > 0.0);
     let points = rows.map(|row| (row.wavenumber.log10(), row.psd_profile.log10())).collect();
     let spectrum = Lines { title: "Power spectral density of the profile (Hann window)", points, of: Of::Spectrum };
     for (name, lines) in [("profile", profile), ("spectrum", spectrum)] {
@@ -33,7 +37,7 @@ pub(super) fn add(staged: &mut Staged, heights: &[f64], record: &ProfileRecord) 
 }
 
 /// The points of a profile, or the lowest and the highest of each of its parts.
-pub(crate) fn outline(values: &[f64], spacing: f64) -> Vec<(f64, f64)> {
+fn outline(values: &[f64], spacing: f64) -> Vec<(f64, f64)> {
     let part = values.len().div_ceil(MOST);
     let place = |i: usize| (i as f64 + 0.5) * spacing;
     let mut points = Vec::new();
