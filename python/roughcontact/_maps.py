@@ -103,6 +103,16 @@ def as_heights(heights: Any) -> Floats:
     return array
 
 
+def as_profile(heights: Any) -> Floats:
+    """The heights of a profile as an array of one row."""
+    array = heights.heights if isinstance(heights, HeightMap) else np.asarray(heights)
+    if array.ndim == 1:
+        array = array[None]
+    if array.ndim != 2 or array.shape[0] != 1:
+        raise ValueError(f"heights: with line, must be a profile, of shape (n,) or (1, n), not of shape {np.shape(heights)}")
+    return as_heights(array)
+
+
 class Parts(NamedTuple):
     """A map of any kind."""
 

@@ -26,7 +26,7 @@ from roughcontact._keys import (
     Shape,
     plain,
 )
-from roughcontact._maps import Heights, as_heights, map_parts
+from roughcontact._maps import Heights, as_heights, as_profile, map_parts
 from roughcontact._result import Result, told
 from roughcontact._run import Bar, Interrupted, NotConvergedError, NotConvergedWarning, ProgressOption, callback, checked
 from roughcontact._surface import Surface
@@ -44,6 +44,7 @@ def solve(
     scene: Path | None = None,
     cell: Quantity | None = None,
     cell_y: Quantity | None = None,
+    line: bool | None = None,
     spectrum: Path | None = None,
     psd: Path | None = None,
     psd_convention: Literal["plain", "fourier"] | None = None,
@@ -119,6 +120,9 @@ def solve(
     cell, cell_y : float, optional
         Sides of the periodic cell along x and y (m). An array needs ``cell``. Without ``cell_y``, spacings of a map are equal
         along x and y, and the cell of other surfaces is a square.
+    line : bool, optional
+        The line contact of a profile in plane strain. ``heights`` is then an array of shape (n,) or (1, n), or the file of a
+        profile, and ``cell`` is its length. Fields have the shape (1, n).
     unit, height_unit, height_scale, channel, layout, missing, mask : optional
         How a file is read, as for :func:`read`.
     spectrum, psd, psd_convention, like, heights_like, waves, hurst, rms, rms_slope, c0, seed, truncation, roll_off, low_cut, amplitudes : optional
@@ -303,6 +307,8 @@ def surface_of(heights: Any, keys: dict[str, Any]) -> Problem:
     for name in (*of_files, *SURFACE_FILES, "psd_convention", "heights_like"):
         if name in keys:
             raise ValueError(f"{name}: is for files; omit it, because the heights are an array (m)")
+    if keys.get("line"):
+        return Problem(keys, as_profile(heights))
     array, sides, doubts = map_parts(heights)
     other = keys.get("add")
     if other is not None and not isinstance(other, (str, os.PathLike)):

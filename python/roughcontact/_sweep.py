@@ -62,6 +62,7 @@ def sweep(
     vary: Vary | None = None,
     cell: Quantity | None = None,
     cell_y: Quantity | None = None,
+    line: bool | None = None,
     spectrum: Path | None = None,
     psd: Path | None = None,
     psd_convention: Literal["plain", "fourier"] | None = None,
@@ -294,7 +295,7 @@ def _anywhere(heights: Any, keys: dict[str, Any], scene: Path | None, strict: bo
     elif heights is not None and not isinstance(heights, Surface):
         keys, array, sides, doubts = surface_of(heights, keys)
         side = _length_of(keys.get("cell"))
-        if sides is None and "cell_y" not in keys and side is not None and array.size:
+        if sides is None and "cell_y" not in keys and not keys.get("line") and side is not None and array.size:
             # The rows take the same, but do not warn.
             doubts += equal_spacings(array.shape, side)[1]
         tell(doubts, strict, stacklevel=4)

@@ -21,6 +21,7 @@ mod inequalities;
 mod interchange;
 mod layer;
 mod leakage;
+mod line;
 mod penetration;
 mod perimeter;
 mod pits;

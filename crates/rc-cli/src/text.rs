@@ -23,7 +23,11 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
     let [nx, ny] = s.grid;
     let pascals = |value| engineering(value, "Pa");
     let method = s.method_reason.as_ref().unwrap_or(&s.method).clone();
-    let cell = format!("{} with {nx} x {ny} elements, E* = {}", cell(sides), pascals(e_star));
+    // A profile has one row.
+    let cell = match ny {
+        1 => format!("{} long with {nx} elements, line contact, E* = {}", engineering(sides[0], "m"), pascals(e_star)),
+        _ => format!("{} with {nx} x {ny} elements, E* = {}", cell(sides), pascals(e_star)),
+    };
     let area = percent(s.area_fraction, s.area_fraction_error);
     let counted = digits(100.0 * s.area_fraction_cells, 4);
     let mean_pressure = measured(s.mean_pressure, s.mean_pressure_error_bar, "Pa");

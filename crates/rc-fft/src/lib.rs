@@ -6,6 +6,7 @@
 //! | item | what it does |
 //! |---|---|
 //! | [`Convolution`] | field → inverse FFT( symbol · FFT(field) ), repeatedly on one grid, in `f32` or `f64` |
+//! | [`LineConvolution`] | the same for a single row |
 //! | [`SymbolTable`] | table of the symbol of a convolution |
 //! | [`half_plane_values`] | forward transform of a real field, then a number for every wave of the half plane kx ≥ 0 |
 //! | [`field_of_columns`] | inverse transform of waves in the columns kx = 0, 1, … to a real field |
@@ -35,6 +36,7 @@ mod convolution;
 mod factors;
 mod half_plane;
 mod instructions;
+mod line_convolution;
 mod lines;
 mod plan;
 mod real_by_complex;
@@ -44,6 +46,7 @@ pub use convolution::{BLOCK_ROWS, Convolution};
 pub use factors::has_small_factors;
 pub use half_plane::{field_of_columns, field_of_half_plane, half_plane_values};
 pub use instructions::Instructions;
+pub use line_convolution::LineConvolution;
 pub use lines::powers_of_lines;
 pub use plan::TransformReal;
 pub use realfft::{ComplexToReal, RealToComplex};

@@ -32,17 +32,19 @@ impl<T: TransformReal> SymbolTable<T> {
         let symmetric = grid.is_square();
         let scale = 1.0 / grid.len() as f64;
         let entry = |kx, ky| T::from_f64(scale * eigenvalue(kx, ky)).expect("a float type holds every f64, rounded");
+        let n_columns = grid.nx() / 2 + 1;
+        let mut values = vec![T::zero(); n_columns * column_len];
+        if !symmetric {
+            values.par_iter_mut().enumerate().for_each(|(i, value)| *value = entry(i / column_len, i % column_len));
+            return Self { column_len, values };
+        }
         // Only entries from the diagonal on are computed. The others follow from symmetry.
-        let first = |kx: usize| if symmetric { kx } else { 0 };
-        let columns: Vec<Vec<T>> = (0..=grid.nx() / 2)
-            .into_par_iter()
-            .map(|kx| (first(kx)..column_len).map(|ky| entry(kx, ky)).collect())
-            .collect();
-        let mut values = vec![T::zero(); columns.len() * column_len];
+        let columns: Vec<Vec<T>> =
+            (0..n_columns).into_par_iter().map(|kx| (kx..column_len).map(|ky| entry(kx, ky)).collect()).collect();
         values.par_chunks_mut(COLUMNS * column_len).enumerate().for_each(|(panel, values)| {
             for ky in 0..column_len {
                 for (column, kx) in values.chunks_exact_mut(column_len).zip(panel * COLUMNS..) {
-                    column[ky] = if ky < first(kx) { columns[ky][kx - ky] } else { columns[kx][ky - first(kx)] };
+                    column[ky] = if ky < kx { columns[ky][kx - ky] } else { columns[kx][ky - kx] };
                 }
             }
         });
@@ -77,6 +79,15 @@ impl<T: TransformReal> SymbolTable<T> {
     pub fn map<U: Send>(&self, convert: impl Fn(T) -> U + Sync) -> SymbolTable<U> {
         let values = self.values.par_iter().map(|&value| convert(value)).collect();
         SymbolTable { column_len: self.column_len, values }
+    }
+
+    /// The eigenvalues of a grid of one row, for 0 ≤ kx ≤ nx/2.
+    ///
+    /// # Panics
+    /// When the table is that of a grid of more rows.
+    pub(crate) fn of_line(&self) -> &[T] {
+        assert_eq!(self.column_len, 1, "rows of the grid of the table");
+        &self.values
     }
 
     /// The eigenvalues of column `kx`, for 0 ≤ ky ≤ ny/2.

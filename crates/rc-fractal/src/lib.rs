@@ -33,6 +33,7 @@
 
 mod bins;
 mod draws;
+mod gaussian;
 mod hurst;
 mod law;
 mod moments;
@@ -48,10 +49,11 @@ mod twin;
 mod waves;
 
 pub use bins::{Limit, Measured};
+pub use gaussian::gaussian_mean_line;
 pub use hurst::{HurstFit, fit_hurst};
 pub use moments::{Moments, height_and_slope_of_grid, height_and_slope_of_patch, moments_of_grid};
 pub use params::{Amplitudes, MAX_WAVES, Normalisation, SpectrumError, SpectrumParams, Truncation};
-pub use profile::{LEAST_POINTS, spectrum_of_profile};
+pub use profile::{LEAST_POINTS, ProfileSpectrumRow, spectra_of_profile, spectrum_of_profile};
 pub use radial::{SpectrumBin, radial_spectrum};
 pub use rc_fft::Complex64;
 pub use surface::{SampleError, Surface};

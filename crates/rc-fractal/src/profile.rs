@@ -30,10 +30,34 @@ pub const LEAST_POINTS: usize = 16;
 /// For fewer than [`LEAST_POINTS`] heights.
 #[must_use]
 pub fn spectrum_of_profile(heights: &[f64], spacing: f64) -> Vec<[f64; 2]> {
+    spectra_of_profile(heights, spacing).iter().map(|row| [row.wavenumber, row.isotropic]).collect()
+}
+
+/// A row of the spectra of a profile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfileSpectrumRow {
+    /// q (rad per unit of length).
+    pub wavenumber: f64,
+    /// C1(q) of the profile (third power of the unit). ⟨h²⟩ = 2 ∫ C1 dq over q > 0.
+    pub along: f64,
+    /// C(q) of the isotropic surface (fourth power of the unit), as in [`spectrum_of_profile`].
+    pub isotropic: f64,
+}
+
+/// The spectrum of a profile, and that of the isotropic surface of [`spectrum_of_profile`], at the same wavenumbers.
+///
+/// # Panics
+/// As [`spectrum_of_profile`].
+#[must_use]
+pub fn spectra_of_profile(heights: &[f64], spacing: f64) -> Vec<ProfileSpectrumRow> {
     assert!(heights.len() >= LEAST_POINTS, "a profile of {} points", heights.len());
     let rows = averaged(&density_of_profile(heights, spacing));
     let chords = chords_of(&rows);
-    rows.iter().map(|&[q, _]| [q, inverted(&chords, q)]).collect()
+    let row = |&[wavenumber, along]: &[f64; 2]| {
+        let isotropic = inverted(&chords, wavenumber);
+        ProfileSpectrumRow { wavenumber, along, isotropic }
+    };
+    rows.iter().map(row).collect()
 }
 
 /// q and C1 of each wave of a profile, without the mean and the limit of resolution. ⟨h²⟩ = 2 ∫ C1 dq over q > 0.

@@ -48,6 +48,16 @@ pub enum FormatError {
         /// What a map has.
         cure: String,
     },
+    /// The file has a map, and a profile is needed.
+    #[error(
+        "a map of {columns} x {rows} points, not a profile; a profile has one row, or lines x and height; omit --line for a map"
+    )]
+    Map {
+        /// Points along x.
+        columns: u64,
+        /// Points along y.
+        rows: u64,
+    },
     /// The name is that of a text file, but the bytes are not.
     #[error("it contains NUL bytes, so it is not a text file; save it as UTF-8, or UTF-16 with a byte-order mark")]
     ZeroBytes,
@@ -244,7 +254,9 @@ fn about(needed: u64, limit: u64) -> String {
 impl FormatError {
     /// The error for a text with a profile, which has `what`.
     pub(crate) fn profile_in_text(what: &str) -> Self {
-        let cure = "a map has a row of heights in each line, or a point x y z".to_owned();
+        let cure =
+            "a map has a row of heights in each line, or a point x y z; give --line for the contact of a profile"
+                .to_owned();
         Self::Profile { what: what.to_owned(), cure }
     }
 

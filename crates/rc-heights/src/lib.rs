@@ -51,6 +51,7 @@ mod material_ratio;
 mod note;
 pub mod pairs;
 mod parameters;
+mod profile_parameters;
 pub mod spectrum;
 mod statistics;
 pub mod suspicion;
@@ -61,12 +62,14 @@ pub use error::{FormatError, ReadError};
 pub use formats::nc_writer as netcdf;
 pub use formats::{
     ChannelInfo, DEFAULT_MAX_BYTES, Format, Layout, LayoutError, Mask, MaskError, MatArray, ReadParams, channels,
-    channels_of, format_of, gsf, mat_arrays, may_have_sides, npy, of_points, parse, parse_with, read, read_with, text,
+    channels_of, format_of, gsf, has_profile, mat_arrays, may_have_sides, npy, of_points, parse, parse_with, read,
+    read_with, text,
 };
 pub use map::{BorderStep, HeightMap};
 pub use material_ratio::{CoreParameters, MaterialRatio};
 pub use note::ReadNote;
 pub use parameters::AreaParameters;
+pub use profile_parameters::ProfileParameters;
 pub use statistics::MapStatistics;
 pub use treat::{
     Crop, Edges, Effect, Fill, Flip, Level, MOST_COPIES, Periodic, Repeat, SAME_LENGTH, TreatError, Treatment, apply,

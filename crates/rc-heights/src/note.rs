@@ -44,6 +44,9 @@ pub enum ReadNote {
         /// The unit.
         unit: LengthUnit,
     },
+    /// Places of a profile decrease, and its points were reversed.
+    #[error("x decreases along the profile, so its points are reversed")]
+    PointsReversed,
     /// The first row of the file is the top of the picture, and rows were reversed.
     #[error("the first row of the file is the top, so rows are reversed: y points up")]
     RowsReversed,

@@ -59,7 +59,18 @@ pub(crate) struct InspectArgs {
     /// Layout of an ambiguous text: each line a row (matrix) or point (xyz)
     #[arg(long, value_name = "matrix|xyz")]
     pub(crate) layout: Option<Layout>,
-    /// Folder for pictures of a height map: heights, spectrum, distribution
+    /// Profiles: Gaussian filter against waves shorter than this λs (m)
+    #[arg(long, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
+    pub(crate) lambda_s: Option<f64>,
+    /// Profiles: Gaussian filter against waves longer than this λc (m)
+    ///
+    /// The filter is that of ISO 16610-21. Half a λc at both ends is not evaluated.
+    #[arg(long, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
+    pub(crate) lambda_c: Option<f64>,
+    /// Profiles: file for the spectrum of the isotropic surface, as rc surface --psd reads it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) psd_out: Option<PathBuf>,
+    /// Folder for pictures: heights, spectrum, distribution; of a profile also psd.csv
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print the statistics as JSON, with the whole spectrum

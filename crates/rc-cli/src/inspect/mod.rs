@@ -6,6 +6,9 @@ pub(crate) mod text;
 
 mod areal;
 mod pictures;
+mod profile;
+mod profile_pictures;
+mod profile_row;
 
 use std::path::{Path, PathBuf};
 
@@ -26,6 +29,7 @@ use crate::files::result::ResultFolder;
 use crate::scene::heights::CellOfMap;
 use crate::scene::keys::{RunKeys, Scene, SurfaceKeys};
 use crate::scene::loaded::LoadedSurface;
+use crate::scene::profile::Profile;
 use crate::scene::values::GridSpec;
 use crate::scene::{file, heights, resolve};
 use crate::text::{solved, written};
@@ -68,7 +72,10 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
         }
         None if args.spectrum => inspect_waves(args)?,
         None if of_scene => shown(args, &of_surface(&args.file, args.over_scene())?)?,
-        None => inspect_heights(args)?,
+        None => match Profile::read(&args.file, &args.keys())? {
+            Some(found) => profile::shown(args, &found)?,
+            None => of_map(args)?,
+        },
     };
     terminal::print(&text)
 }
@@ -217,6 +224,21 @@ pub(crate) fn draw_surface(path: &Path, folder: &Path, quiet: bool) -> Result<Ve
     tell(&record.warnings, &RunKeys { quiet, ..RunKeys::default() });
     files::check_folder(folder)?;
     Ok(pictures::write(folder, &heights, &record)?)
+}
+
+/// Statistics of a height map, which has no filters of profiles.
+fn of_map(args: &InspectArgs) -> Result<String, CliError> {
+    let flags = [
+        ("lambda_s", args.lambda_s.is_some()),
+        ("lambda_c", args.lambda_c.is_some()),
+        ("psd_out", args.psd_out.is_some()),
+    ];
+    match flags.iter().find(|(_, is_given)| *is_given) {
+        Some((key, _)) => {
+            Err(CliError::input(format_args!("{key}: applies to profiles, lines x z; omit it for a map")))
+        }
+        None => inspect_heights(args),
+    }
 }
 
 /// Statistics of a height map, after a list of its channels if it has several.

@@ -44,6 +44,13 @@ pub struct SurfaceKeys {
     /// .plu, .plux, .vk4, .vk6, .nid, .stp, .opdx, .frt, .bcrf, 16-bit .png or .tif.
     #[arg(long, value_name = "FILE")]
     pub heights: Option<PathBuf>,
+    /// Line contact of a profile in plane strain: lines x z, or z with --cell
+    ///
+    /// The heights are constant along y. The profile repeats after its length, which is the number of points times their
+    /// step.
+    #[arg(long)]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub line: bool,
     /// Fourier coefficients: lines kx ky Re Im (waves per cell; m)
     #[arg(long, value_name = "FILE", help_heading = help::FILES)]
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -89,7 +96,7 @@ pub struct SurfaceKeys {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub missing: Option<Marks>,
     /// Masked points of a .gwy: use (missing) or ignore [default: use]
-    #[arg(long, value_name = "use|ignore", help_heading = help::FILES)]
+    #[arg(long, value_name = "use|ignore", help_heading = help::FILES, hide_short_help = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mask: Option<Mask>,
     /// Channel of a file with several [default: the first with heights]

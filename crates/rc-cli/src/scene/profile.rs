@@ -4,50 +4,61 @@ use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 use rc_fractal::{LEAST_POINTS, MAX_WAVES, spectrum_of_profile};
-use rc_heights::{HeightMap, Layout, LengthUnit, ReadNote, pairs};
+use rc_heights::{HeightMap, Layout, ReadNote, ReadParams, has_profile};
 
+use super::heights;
 use super::keys::SurfaceKeys;
 use crate::error::CliError;
-
-/// Relative difference of spacings that are equal.
-const EQUAL: f64 = 0.01;
 
 /// A profile of equally spaced points, in metres.
 #[derive(Clone, Debug)]
 pub(crate) struct Profile {
-    heights: Vec<f64>,
-    spacing: f64,
-    /// Whether nothing names the unit of its numbers.
-    pub(crate) is_assumed: bool,
+    /// Heights (m); `NaN` where missing.
+    pub(crate) heights: Vec<f64>,
+    /// Step of the points (m).
+    pub(crate) spacing: f64,
+    /// What the reader did and assumed.
+    pub(crate) notes: Vec<ReadNote>,
 }
 
 impl Profile {
-    /// Reads a text of two columns, x and z. `None` for any other file, which is that of a map.
+    /// Reads a profile. `None` for any other file, which is that of a map.
     ///
     /// # Errors
-    /// [`CliError::Input`] when points are too few, not finite, or not equally spaced along x.
+    /// [`CliError::Input`] when points are too few, not finite, not equally spaced along x, or without a step.
     pub(crate) fn read(path: &Path, keys: &SurfaceKeys) -> Result<Option<Self>, CliError> {
-        if path.is_dir() || keys.layout == Some(Layout::Matrix) {
+        let params = keys.read_params();
+        if path.is_dir() || keys.layout == Some(Layout::Matrix) || !has_profile(path, &params).unwrap_or(false) {
             return Ok(None);
         }
-        let Ok(points) = pairs::read_within(path, keys.read_params().max_bytes, "x and z") else { return Ok(None) };
-        let fail = |message: std::fmt::Arguments<'_>| CliError::in_file(path, message);
-        check_heights(path, points.iter().map(|point| point[1]))?;
-        let spacing = (points[points.len() - 1][0] - points[0][0]) / (points.len() - 1) as f64;
-        let is_equal = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0] - spacing).abs() <= EQUAL * spacing;
-        if !(spacing > 0.0 && points.windows(2).all(is_equal)) {
-            return Err(fail(format_args!(
-                "the points of the profile are not equally spaced along x; give lines x z with equal steps of x"
-            )));
+        let params = ReadParams { is_profile: true, ..params };
+        let map = heights::read(path, &params, keys.scales())?;
+        let n = map.heights.values().len();
+        check_number(path, n)?;
+        let given = keys.cell.filter(|_| map.sides.is_none() || map.sides_are_assumed());
+        let Some(length) = given.or(map.sides.map(|[length, _]| length)) else {
+            return Err(CliError::in_file(path, "a profile without places; give cell (m), the length of the profile"));
+        };
+        Ok(Some(Self { heights: map.heights.into_values(), spacing: length / n as f64, notes: map.notes }))
+    }
+
+    /// The profile without missing points.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] with the first missing point.
+    pub(crate) fn complete(self, path: &Path) -> Result<Self, CliError> {
+        match self.heights.iter().position(|height| !height.is_finite()) {
+            None => Ok(self),
+            Some(i) => Err(CliError::in_file(
+                path,
+                format_args!("point {} of the profile is {}; heights must be finite", i + 1, self.heights[i]),
+            )),
         }
-        let unit = keys.unit.map_or(1.0, LengthUnit::metres);
-        let of_heights = keys.height_unit.map_or(unit, LengthUnit::metres);
-        let of_heights = keys.height_scale.unwrap_or(of_heights);
-        Ok(Some(Self {
-            heights: points.iter().map(|point| point[1] * of_heights).collect(),
-            spacing: spacing * unit,
-            is_assumed: keys.unit.is_none(),
-        }))
+    }
+
+    /// Whether nothing names the unit of its numbers.
+    pub(crate) fn is_assumed(&self) -> bool {
+        self.notes.iter().any(ReadNote::is_assumption)
     }
 
     /// The profile in a map of one row, in metres. `None` for any other map.
@@ -60,15 +71,14 @@ impl Profile {
             return Ok(None);
         }
         let heights = map.heights.values().to_vec();
-        check_heights(path, heights.iter().copied())?;
+        check_number(path, heights.len())?;
         let Some(sides) = map.sides else {
             let message = "a profile whose points have no distance; give a text of lines x z";
             return Err(CliError::in_file(path, message));
         };
         let side = if grid.ny() == 1 { sides[0] } else { sides[1] };
         let spacing = side / heights.len() as f64;
-        let is_assumed = map.notes.iter().any(ReadNote::is_assumption);
-        Ok(Some(Self { heights, spacing, is_assumed }))
+        Self { heights, spacing, notes: map.notes.clone() }.complete(path).map(Some)
     }
 
     /// Length of the profile (m).
@@ -93,15 +103,10 @@ impl Profile {
     }
 }
 
-/// Refuses profiles of too few points, and of points that are not finite.
-fn check_heights(path: &Path, heights: impl ExactSizeIterator<Item = f64>) -> Result<(), CliError> {
-    let fail = |message: std::fmt::Arguments<'_>| Err(CliError::in_file(path, message));
-    let n = heights.len();
-    if n < LEAST_POINTS {
-        return fail(format_args!("a profile of {n} points; give at least {LEAST_POINTS}"));
+/// Refuses profiles of too few points.
+fn check_number(path: &Path, n: usize) -> Result<(), CliError> {
+    if n >= LEAST_POINTS {
+        return Ok(());
     }
-    match heights.enumerate().find(|(_, height)| !height.is_finite()) {
-        Some((i, height)) => fail(format_args!("point {} of the profile is {height}; heights must be finite", i + 1)),
-        None => Ok(()),
-    }
+    Err(CliError::in_file(path, format_args!("a profile of {n} points; give at least {LEAST_POINTS}")))
 }

@@ -124,10 +124,22 @@ impl SurfaceKeys {
             return Err(CliError::input(message));
         }
         let CellOfMap { cell, cell_y, assumed } = match sides {
+            _ if self.line => self.cell_of_profile(sides.map(|[length, _]| length))?,
             Some(sides) => CellOfMap::of_sides(Path::new("heights"), sides, [self.cell, self.cell_y], points)?,
             None => CellOfMap::default().of_points(self.cell, self.cell_y, points),
         };
         Ok((Self { heights: Some(HEIGHTS_FILE.into()), cell, cell_y, ..self }, assumed))
+    }
+
+    /// The cell of a profile of this `length` (m), or of that in the keys.
+    fn cell_of_profile(&self, length: Option<f64>) -> Result<CellOfMap, CliError> {
+        let side = self.cell.or(length);
+        match (side, length) {
+            (Some(side), Some(length)) if !heights::same(side, length) => Err(CliError::input(format_args!(
+                "cell: the profile is {length} m long, but cell says {side} m; omit cell"
+            ))),
+            _ => Ok(CellOfMap { cell: side, cell_y: side, assumed: Vec::new() }),
+        }
     }
 }
 
@@ -308,9 +320,9 @@ impl SurfaceSetup {
         let grid = map.grid();
         let (heights, as_read) = heights::divided(map, self.cell.side());
         // In a result folder the map is an array in metres, and a sum is a map.
-        let SurfaceKeys { cell, cell_y, read_limit, .. } = self.keys;
+        let SurfaceKeys { cell, cell_y, line, read_limit, .. } = self.keys;
         let (path, spec) = (Some(HEIGHTS_FILE.into()), Some(GridSpec { nx, ny }));
-        let keys = SurfaceKeys { heights: path, cell, cell_y, grid: spec, read_limit, ..SurfaceKeys::default() };
+        let keys = SurfaceKeys { heights: path, cell, cell_y, line, grid: spec, read_limit, ..SurfaceKeys::default() };
         let shape = Shape::Map { heights: Arc::new(heights), as_read };
         let form = self.form;
         Ok(LoadedSurface { shape, grid, keys, warnings, notes, origin: None, form, of_map: Default::default() })

@@ -35,6 +35,9 @@ impl CheckedScene {
     /// [`CliError::Input`].
     pub fn new(surface: SurfaceKeys, contact: ContactKeys) -> Result<Self, CliError> {
         resolve::check_size_and_material(&surface, &contact)?;
+        if surface.line {
+            features::check(&contact, [Feature::Line])?;
+        }
         Self::with_surface(contact, surface.heights.is_some() || surface.like.is_some(), || resolve::surface(surface))
     }
 
@@ -49,6 +52,9 @@ impl CheckedScene {
         (sides, points): (Option<[f64; 2]>, [usize; 2]),
         contact: ContactKeys,
     ) -> Result<Self, CliError> {
+        if surface.line {
+            features::check(&contact, [Feature::Line])?;
+        }
         let (surface, assumed) = surface.of_map(sides, points)?;
         resolve::check_cell_and_material(&surface, &contact)?;
         Self::with_surface(contact, true, || Ok(SurfaceSetup { assumed, ..resolve::surface_in_cell(surface)? }))

@@ -157,7 +157,7 @@ mod tests {
         let refused = sweep.solve(&problems, &results, Workers { threads: 1, at_once: 1 });
         assert!(matches!(refused, Err(RunError::Refused { kept: 1, .. })), "{refused:?}");
         assert_eq!(sweep.kept().rows()[&0]["status"], json!("not_converged"));
-        let error = execute(&surfaces, &Arc::new(sweep)).expect_err("a row did not converge");
+        let error = execute(&surfaces, &Arc::new(sweep), (Shard::WHOLE, &out)).expect_err("a row did not converge");
         assert_eq!(error.exit_code(), 3, "{error}");
         assert!(error.to_string().starts_with("1 of 2 rows did not converge"), "{error}");
         let table = std::fs::read_to_string(out.join(TABLE_FILE)).expect("a table");

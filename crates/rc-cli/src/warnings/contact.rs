@@ -29,7 +29,7 @@ pub(crate) fn before(surface: &LoadedSurface, contact: &ContactSetup) -> Vec<War
         None => found.extend(shape(surface, contact).warnings()),
     }
     if let (Some((map, _)), Boundary::Periodic) = (surface.map(), contact.boundary) {
-        found.extend(border(rc_heights::BorderStep::of(map)));
+        found.extend(border(map));
     }
     if let Control::MeanPressure(mean) = contact.control {
         found.extend(mean_pressure(mean, contact));

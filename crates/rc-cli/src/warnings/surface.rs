@@ -215,12 +215,18 @@ pub(crate) fn mirrored(map: &HeightMap, treatments: &[Treatment]) -> Option<Warn
 }
 
 /// A doubt about a map that is solved as if it repeated itself.
-pub(crate) fn border(step: BorderStep) -> Option<Warning> {
+pub(crate) fn border(map: &Field) -> Option<Warning> {
+    let step = BorderStep::of(map);
+    let is_profile = map.grid().ny() == 1;
     let text = || {
         format!(
-            "the heights do not repeat themselves: the step across the border is {} times that between neighbours; solve \
-             the map with --boundary free, or make it periodic (rc surface --periodic mirror)",
-            digits(step.ratio(), 3)
+            "the heights do not repeat themselves: the step across the border is {} times that between neighbours; {}",
+            digits(step.ratio(), 3),
+            if is_profile {
+                "make the profile periodic (rc surface --line --periodic mirror)"
+            } else {
+                "solve the map with --boundary free, or make it periodic (rc surface --periodic mirror)"
+            }
         )
     };
     (!step.is_periodic()).then(|| Warning::new(Border, text()))

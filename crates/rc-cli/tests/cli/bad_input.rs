@@ -171,7 +171,7 @@ fn write_bad_maps(place: &Place) -> Vec<(&'static str, &'static str)> {
         ("nan.npy", "row 2, column 3"),
         ("inf.npy", "row 0, column 0"),
         ("flat.npy", "flat"),
-        ("line.npy", "2-D"),
+        ("line.npy", "a profile"),
         ("cube.npy", "2-D"),
         ("none.npy", "1 to"),
         ("huge.npy", "shorter"),

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::support::{Place, assert_refused, assert_solved, small, text};
+use crate::support::{Place, assert_refused, assert_solved, npy, small, text};
 
 fn pair(summary: &Value, key: &str) -> [f64; 2] {
     [0, 1].map(|axis| summary["leakage"][key][axis].as_f64().unwrap_or_else(|| panic!("no {key} of axis {axis}")))
@@ -139,9 +139,10 @@ fn a_sweep_finds_the_pressure_at_which_the_film_closes() {
     assert!(leaks < seals && seals < 1.011 * leaks, "{along_x}");
     for (pressure, percolates) in [(leaks, true), (seals, false)] {
         let pressure = pressure.to_string();
-        let solve = ["--pressure", &pressure, "--json"];
-        let summary = summary_of(&place.run(&[&["solve"][..], &scene, &film, &solve].concat()));
-        let leakage = &summary["leakage"];
+        let folder = format!("at-{percolates}");
+        let solve = ["--pressure", &pressure, "--quiet", "--out", &folder];
+        assert_solved(&place.run(&[&["solve"][..], &scene, &film, &solve].concat()));
+        let leakage = &place.json(&format!("{folder}/summary.json"))["leakage"];
         assert_eq!(leakage["percolates"][0], percolates, "{pressure} Pa");
         let [k, flow] = ["permeance", "flow"].map(|key| leakage[key][0].as_f64().expect("a number"));
         assert!((flow - k * 1e5 / 0.024).abs() <= 1e-12 * flow.abs(), "{flow}, {k}");
@@ -153,12 +154,13 @@ fn a_sweep_finds_the_pressure_at_which_the_film_closes() {
 fn a_patch_leaks_between_opposite_borders() {
     let place = Place::new();
     // Walls along x at y = 0 leave a channel along x, which the periodic cell and the patch have alike.
-    let ridge = |i: usize| if (i / 32).is_multiple_of(31) { 1e-5 } else { 0.0 };
+    let ridge = |i: usize| if (i / 32).is_multiple_of(31) { 1e-5_f64 } else { 0.0 };
     let heights: Vec<u8> = (0..32 * 32).flat_map(|i: usize| ridge(i).to_le_bytes()).collect();
     place.write("ridges.npy", npy("<f8", false, "(32, 32)", &heights));
     let solve =
-        ["solve", "ridges.npy", "--cell", "1e-3", "--e-star", "1e9", "--pressure", "1e5", "--leakage", "--json"];
-    let patch = summary_of(&place.run(&[&solve[..], &["--boundary", "free", "--out", "patch"]].concat()));
+        ["solve", "ridges.npy", "--cell", "1e-3", "--e-star", "1e9", "--pressure", "1e5", "--leakage", "--quiet"];
+    assert_solved(&place.run(&[&solve[..], &["--boundary", "free", "--out", "patch"]].concat()));
+    let patch = place.json("patch/summary.json");
     assert_eq!(patch["leakage"]["percolates"], serde_json::json!([true, false]), "{}", patch["leakage"]);
     let flux = rc_heights::npy::read(&place.path("patch/flow_x.npy")).expect("a field");
     let through: f64 = (0..32).map(|iy| flux.at(5, iy)).sum::<f64>() * 1e-3 / 32.0;

@@ -7,6 +7,7 @@ mod guide;
 mod hardness;
 mod leakage;
 mod like;
+mod line;
 mod measured;
 mod over_ranks;
 mod prepare;

@@ -50,6 +50,7 @@ mod plu;
 mod plux;
 mod png;
 mod points;
+mod profile;
 mod quantity;
 mod records;
 mod scalings;
@@ -116,6 +117,8 @@ pub fn may_have_sides(path: &Path, params: &ReadParams) -> Result<bool, ReadErro
     }
     Ok(match format {
         Format::Npy => npy::has_points(&file.start, params.layout),
+        // Only the last line tells the step of a profile.
+        Format::Csv | Format::Xyz if params.is_profile => true,
         Format::Csv => text::may_have_sides(&file.start),
         format => format.has_sides(),
     })
@@ -150,6 +153,33 @@ pub fn read_with(path: &Path, params: &ReadParams) -> Result<HeightMap, ReadErro
     let format = layout::format(file.format, params.layout);
     let bytes = file.whole(format, params);
     bytes.and_then(|bytes| parse_with(&bytes, format, params)).map_err(fail)
+}
+
+/// The profile of a text. Units and marks are those of its columns.
+fn profile_of_text(bytes: &[u8], params: &ReadParams) -> Result<HeightMap, FormatError> {
+    let map = checked(profile::parse(bytes, &params.missing)?, &[])?;
+    let is_unused = !params.missing.is_empty() && map.missing() == 0;
+    Ok(if is_unused { map.with_note(ReadNote::NoMark) } else { map })
+}
+
+/// Whether the file at `path` has a profile: a text of one or two columns, an array of one row, a profile of an
+/// instrument.
+///
+/// # Errors
+/// Those of [`read`], as far as they follow from the first bytes.
+pub fn has_profile(path: &Path, params: &ReadParams) -> Result<bool, ReadError> {
+    let file = Opened::new(path, params.max_bytes)?;
+    let format = layout::format(file.format, params.layout);
+    Ok(match format {
+        _ if params.layout.is_some() => false,
+        Format::Csv | Format::Xyz => profile::looks_like_profile(&file.start),
+        Format::Npy => npy::has_profile(&file.start),
+        Format::Sur => {
+            let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
+            file.whole(format, params).map(|bytes| sur::has_profile(&bytes)).map_err(fail)?
+        }
+        _ => false,
+    })
 }
 
 /// The channels of the file at `path`, in its order. Their values are not read.
@@ -190,6 +220,19 @@ pub fn parse(bytes: &[u8], format: Format) -> Result<HeightMap, FormatError> {
 /// # Errors
 /// [`FormatError`] when the bytes are not valid, as for [`read_with`].
 pub fn parse_with(bytes: &[u8], format: Format, params: &ReadParams) -> Result<HeightMap, FormatError> {
+    if params.is_profile {
+        let is_text = matches!(format, Format::Csv | Format::Xyz);
+        return if is_text {
+            profile_of_text(bytes, params)
+        } else {
+            profile::of_map(chosen_map(bytes, format, params)?)
+        };
+    }
+    chosen_map(bytes, format, params)
+}
+
+/// The map in the channel that `params` select.
+fn chosen_map(bytes: &[u8], format: Format, params: &ReadParams) -> Result<HeightMap, FormatError> {
     let channels = named(in_bytes(bytes, format, params)?);
     let of_heights = channels.iter().filter(|channel| channel.is_height).count();
     let is_first_of_several = params.channel.is_none() && of_heights > 1;
@@ -235,7 +278,7 @@ fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &'a ReadParams) -> Chan
         Format::Plux => plux::channels(bytes, params.max_bytes)?,
         Format::Png => png::channels(bytes, params.max_bytes),
         Format::Sdf => only(move || sdf::parse(bytes)),
-        Format::Sur => sur::channels(bytes, params.row_is_map, params.max_bytes)?,
+        Format::Sur => sur::channels(bytes, params)?,
         Format::Surfer => only(move || surfer::parse(bytes)),
         Format::Tiff => tiff::channels(bytes, params.max_bytes)?,
         Format::Vk4 if vk6::is_archive(bytes) => vk6::channels(bytes, params.max_bytes)?,

@@ -17,6 +17,7 @@ use super::layout::Layout;
 use super::limit;
 use super::params::ReadParams;
 use super::points::{self, Kind};
+use super::profile;
 use super::records::{self, Record};
 use crate::{Format, FormatError, HeightMap, ReadError, Unit};
 
@@ -69,6 +70,9 @@ pub(super) fn map(file: impl Read, bytes: u64, params: &ReadParams, max_bytes: u
     if let DType::Record(_) = npy.header.dtype() {
         return npy.points(max_bytes).map(of_array);
     }
+    if params.is_profile {
+        return npy.profile(max_bytes);
+    }
     let shape = npy.sides()?;
     let (order, kind) = (npy.header.order(), Kind::of(Format::Npy, shape, params.layout_of(shape))?);
     if kind == Kind::Map {
@@ -97,10 +101,25 @@ pub(super) fn has_points(start: &[u8], layout: Option<Layout>) -> bool {
     })
 }
 
+/// Whether the header at the start of a file is that of a profile: one row, or one or two columns.
+pub(super) fn has_profile(start: &[u8]) -> bool {
+    Array::open(start, u64::MAX).is_ok_and(|npy| match *npy.header.shape() {
+        [_] => true,
+        [ny, nx] => ny.min(nx) == 1 || nx == 2 && ny > FEW,
+        _ => false,
+    })
+}
+
 /// The map whose numbers are those of an array, so metres by definition.
 fn of_array(map: HeightMap) -> HeightMap {
     HeightMap { height_unit: Unit::Array, side_unit: Unit::Array, ..map }
 }
+
+/// Bytes for a point of a profile: its numbers, its place and its height.
+const PROFILE_POINT: u64 = 16 + 16 + 8;
+
+/// Rows above which two columns are not those of a map.
+const FEW: u64 = 8;
 
 /// An array whose header is read.
 struct Array<R> {
@@ -189,6 +208,20 @@ impl<R: Read> Array<R> {
             return Err(header("length", "longer than its array", "that of one array; the file is damaged"));
         }
         Ok(values)
+    }
+
+    /// The profile of an array of one row, or of one or two columns.
+    fn profile(self, max_bytes: u64) -> Result<HeightMap, FormatError> {
+        let shape = if let [n] = *self.header.shape() { [1, n] } else { self.sides()? };
+        let n = self.count(real_type(&self.header.dtype())?.1)? as u64;
+        limit::check(n.saturating_mul(PROFILE_POINT), max_bytes)?;
+        let order = self.header.order();
+        let values = self.values()?;
+        if order == Order::Fortran && shape[0].min(shape[1]) > 1 {
+            let grid = Grid::new(shape[1] as usize, shape[0] as usize)?;
+            return profile::of_array(transposed(&values, grid), shape).map(of_array);
+        }
+        profile::of_array(values, shape).map(of_array)
     }
 
     /// The map of records.

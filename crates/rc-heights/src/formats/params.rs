@@ -13,6 +13,8 @@ pub struct ReadParams {
     pub layout: Option<Layout>,
     /// Whether an array of one row or one column is a map: both sides of its cell are known, so it is no profile.
     pub row_is_map: bool,
+    /// Whether the file has a profile, which is read as a map of one row.
+    pub is_profile: bool,
     /// Values that mark missing points, in the numbers of the file.
     pub missing: Vec<f64>,
     /// What a mask in the file means.
@@ -29,6 +31,7 @@ impl Default for ReadParams {
             channel: None,
             layout: None,
             row_is_map: false,
+            is_profile: false,
             missing: Vec::new(),
             mask: Mask::default(),
             max_bytes: DEFAULT_MAX_BYTES,
@@ -40,6 +43,6 @@ impl Default for ReadParams {
 impl ReadParams {
     /// The layout of an array of this shape.
     pub(super) fn layout_of(&self, shape: [u64; 2]) -> Option<Layout> {
-        self.layout.or((self.row_is_map && shape.contains(&1)).then_some(Layout::Matrix))
+        self.layout.or(((self.row_is_map || self.is_profile) && shape.contains(&1)).then_some(Layout::Matrix))
     }
 }

@@ -15,6 +15,7 @@ use super::field::flip;
 use super::fields::{factor, refused, shown_as_line};
 use super::instrument::{Places, map, metres, scale_measured, sides};
 use super::limit;
+use super::params::ReadParams;
 use crate::{Format, FormatError, HeightMap};
 
 /// The first bytes of an object with integers that are not compressed.
@@ -69,7 +70,13 @@ struct Object<'a> {
     data: &'a [u8],
 }
 
-pub(super) fn channels(bytes: &[u8], row_is_map: bool, max_bytes: u64) -> Channels<'_> {
+/// Whether the first object is a profile.
+pub(super) fn has_profile(bytes: &[u8]) -> bool {
+    object(bytes).is_ok_and(|object| object.is_profile())
+}
+
+pub(super) fn channels<'a>(bytes: &'a [u8], params: &ReadParams) -> Channels<'a> {
+    let (max_bytes, takes_profiles) = (params.max_bytes, params.is_profile);
     let mut channels = Vec::new();
     let mut rest = bytes;
     loop {
@@ -84,7 +91,7 @@ pub(super) fn channels(bytes: &[u8], row_is_map: bool, max_bytes: u64) -> Channe
         let stored = object.stored();
         let data = object.data;
         let (name, is_height) = (object.name.clone(), object.is_height && !PICTURES.contains(&object.kind));
-        let channel = object.is_map(row_is_map).map(|()| {
+        let channel = object.is_map(takes_profiles).map(|()| {
             let read = Box::new(move || object.read(is_height, max_bytes));
             Channel { name: name.clone(), is_height, read }
         });
@@ -118,11 +125,14 @@ fn object(bytes: &[u8]) -> Result<Object<'_>, FormatError> {
     }
     let units = [header.text::<16>(180)?, header.text::<16>(196)?, header.text::<16>(212)?];
     let [x, y, z] = [metres(&units[0]), metres(&units[1]), metres(&units[2])];
-    // A profile has no axis y.
-    let is_line = header.u16(18)? == PROFILE && grid.ny() == 1;
-    let sides = match (x, if is_line { x } else { y }) {
+    let sides = match (x, y) {
+        // A profile has no axis y.
+        (Some(x), _) if header.u16(18)? == PROFILE && grid.ny() == 1 => {
+            let spacing = [x * header.f32(120)?; 2];
+            Some(sides(Format::Sur, ["spacing along x"; 2], grid, spacing)?)
+        }
         (Some(x), Some(y)) => {
-            let spacing = [x * header.f32(120)?, y * header.f32(if is_line { 120 } else { 124 })?];
+            let spacing = [x * header.f32(120)?, y * header.f32(124)?];
             Some(sides(Format::Sur, ["spacing along x", "spacing along y"], grid, spacing)?)
         }
         _ => None,
@@ -146,11 +156,17 @@ fn object(bytes: &[u8]) -> Result<Object<'_>, FormatError> {
 }
 
 impl Object<'_> {
-    /// An error for an object that is not a map, or not a profile that counts as one.
-    fn is_map(&self, row_is_map: bool) -> Result<(), FormatError> {
+    fn is_profile(&self) -> bool {
+        self.kind == PROFILE && self.grid.ny() == 1
+    }
+
+    /// An error for an object that is neither a map nor a profile that is asked for.
+    fn is_map(&self, takes_profiles: bool) -> Result<(), FormatError> {
         let other = OTHERS.iter().find(|(kind, _)| *kind == self.kind).map(|(_, what)| *what);
-        let (what, cure) = if self.kind == PROFILE && self.grid.ny() == 1 && !row_is_map {
-            ("a profile, not a map,".to_owned(), "a map of heights is needed: save the surface")
+        let (what, cure) = if self.is_profile() && takes_profiles {
+            return Ok(());
+        } else if self.is_profile() {
+            ("a profile, not a map,".to_owned(), "save the surface, or give --line for the contact of a profile")
         } else if let Some(what) = other {
             (what.to_owned(), "a map of heights is needed: save the surface")
         } else if self.values > 1 {

@@ -153,6 +153,46 @@ impl Titles {
         Err(refused(Format::Xyz, "titles of columns", &self.names.join(", "), expected))
     }
 
+    /// The columns of x and height of a profile of `width` columns.
+    ///
+    /// # Errors
+    /// [`FormatError::Field`] when titles do not say which of more than two columns they are.
+    pub(super) fn of_profile(&self, width: usize) -> Result<[usize; 2], FormatError> {
+        let is_counter = |i: &usize| self.names.get(*i).is_some_and(|name| name.is_empty() || is_count(name));
+        let columns: Vec<usize> = (0..width).filter(|i| !is_counter(i)).collect();
+        let named = |words: &[&str], other: Option<usize>| {
+            let is = |i: &usize| self.names.get(*i).is_some_and(|name| words.contains(&first_word(name).as_str()));
+            columns.iter().copied().filter(|i| Some(*i) != other).find(is)
+        };
+        let x = named(&["x", "lateral", "position", "distance", "length"], None);
+        let height = named(&["z", "height", "heights", "depth", "profile", "raw"], x);
+        let rest = |other: Option<usize>| columns.iter().copied().find(|i| Some(*i) != other);
+        match (x, height) {
+            (Some(x), Some(height)) => Ok([x, height]),
+            _ if columns.len() != 2 => {
+                let found = if self.names.is_empty() { format!("{width} columns") } else { self.names.join(", ") };
+                let expected = "x and height, with titles if there are other columns";
+                Err(refused(Format::Csv, "columns of a profile", &found, expected))
+            }
+            (x, Some(height)) => Ok([x.or(rest(Some(height))).unwrap_or(0), height]),
+            (x, None) => {
+                let x = x.or(rest(None));
+                Ok([x.unwrap_or(0), rest(x).unwrap_or(1)])
+            }
+        }
+    }
+
+    /// The units of x and height of a profile. If only one unit is named, it is that of both.
+    ///
+    /// # Errors
+    /// [`FormatError::Field`] for a unit in brackets that is none of length.
+    pub(super) fn units_of_profile(&self, [x, height]: [usize; 2]) -> Result<[Option<LengthUnit>; 2], FormatError> {
+        // A title may be a unit alone.
+        let alone = |column: usize| self.names.get(column).and_then(|name| unit_of(name));
+        let [of_x, of_heights, _] = self.units([x, height, height])?;
+        Ok([of_x.or(alone(x)), of_heights.or(alone(height))])
+    }
+
     /// The units of three columns. If only one unit is named, it is that of all three.
     ///
     /// # Errors

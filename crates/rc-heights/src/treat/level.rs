@@ -12,12 +12,13 @@ use super::treatment::Level;
 use crate::HeightMap;
 
 impl Level {
-    /// Number of terms of the polynomial.
-    fn n_terms(self) -> usize {
-        match self {
-            Self::Mean => 1,
-            Self::Plane => 3,
-            Self::Quadratic => 6,
+    /// Number of terms of the polynomial, on a map or on a profile, which is a map of one row.
+    fn n_terms(self, is_profile: bool) -> usize {
+        match (self, is_profile) {
+            (Self::Mean, _) => 1,
+            (Self::Plane, true) => 2,
+            (Self::Plane, false) | (Self::Quadratic, true) => 3,
+            (Self::Quadratic, false) => 6,
         }
     }
 }
@@ -42,12 +43,21 @@ fn terms(DVec2 { x, y }: DVec2) -> [f64; MOST] {
     [1.0, x, y, x * y, 1.5 * x * x - 0.5, 1.5 * y * y - 0.5]
 }
 
+/// The terms at a point of [-1, 1] along a profile.
+fn terms_along(x: f64) -> [f64; MOST] {
+    [1.0, x, 1.5 * x * x - 0.5, 0.0, 0.0, 0.0]
+}
+
 pub(super) fn level(mut map: HeightMap, form: Level) -> Result<HeightMap, TreatError> {
     let grid = map.heights.grid();
-    let at = |i: usize| terms(2.0 * grid.centre(i % grid.nx(), i / grid.nx()) - 1.0);
+    let is_profile = grid.ny() == 1;
+    let at = |i: usize| {
+        let place = 2.0 * grid.centre(i % grid.nx(), i / grid.nx()) - 1.0;
+        if is_profile { terms_along(place.x) } else { terms(place) }
+    };
     // Heights are taken about their mean. Otherwise a fit of nanometres on metres would lose digits.
     let (mean, points) = mean(&map.heights);
-    let n = form.n_terms();
+    let n = form.n_terms(is_profile);
     let (mut matrix, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);
     for (i, height) in map.heights.values().iter().enumerate().filter(|(_, height)| !height.is_nan()) {
         let t = at(i);

@@ -32,7 +32,12 @@ pub(super) fn gaussian(
 ) -> Result<Field, TreatError> {
     let (grid, spacing) = (map.heights.grid(), map.spacing());
     let sides = [spacing[0] * grid.nx() as f64, spacing[1] * grid.ny() as f64];
-    let (least, most) = (LEAST_POINTS * spacing[0].max(spacing[1]), sides[0].min(sides[1]));
+    // A profile has one row.
+    let (longest_step, most) = match grid.ny() {
+        1 => (spacing[0], sides[0]),
+        _ => (spacing[0].max(spacing[1]), sides[0].min(sides[1])),
+    };
+    let least = LEAST_POINTS * longest_step;
     if !(least..=most).contains(&wavelength) {
         return Err(TreatError::Wavelength { filter, wavelength, least, most });
     }

@@ -114,7 +114,7 @@ pub fn grids_after(map: &HeightMap, treatments: &[Treatment]) -> Result<Vec<Grid
     let next = |treatment: &Treatment| -> Result<Grid, TreatError> {
         let after = match *treatment {
             Treatment::Crop(crop) => crop::part(grid, spacing, crop)?.1,
-            Treatment::Periodic(Periodic::Mirror) => Grid::new(2 * grid.nx(), 2 * grid.ny())?,
+            Treatment::Periodic(Periodic::Mirror) => periodic::mirrored(grid)?,
             Treatment::Resample(wanted) => {
                 let ratio = |n: usize, wanted: usize| n as f64 / wanted as f64;
                 spacing = [spacing[0] * ratio(grid.nx(), wanted.nx()), spacing[1] * ratio(grid.ny(), wanted.ny())];

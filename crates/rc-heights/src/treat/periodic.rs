@@ -1,6 +1,6 @@
 //! Maps whose opposite borders match.
 
-use rc_core::{Field, Grid};
+use rc_core::{Field, Grid, GridError};
 
 use super::error::TreatError;
 use super::moments::mean;
@@ -19,12 +19,16 @@ pub(super) fn periodic(map: HeightMap, how: Periodic) -> Result<HeightMap, Treat
     }
 }
 
+/// The grid of a map with its mirror images. A profile, which is a map of one row, stays one row.
+pub(super) fn mirrored(grid: Grid) -> Result<Grid, GridError> {
+    Grid::new(2 * grid.nx(), if grid.ny() == 1 { 1 } else { 2 * grid.ny() })
+}
+
 fn mirror(map: &HeightMap) -> Result<HeightMap, TreatError> {
     let grid = map.heights.grid();
-    let (nx, ny) = (grid.nx(), grid.ny());
-    let twice = Grid::new(2 * nx, 2 * ny)?;
+    let twice = mirrored(grid)?;
     let mut values = Vec::with_capacity(twice.len());
-    for iy in (0..ny).chain((0..ny).rev()) {
+    for iy in (0..grid.ny()).chain((0..grid.ny()).rev()).take(twice.ny()) {
         values.extend_from_slice(map.heights.row(iy));
         values.extend(map.heights.row(iy).iter().rev());
     }

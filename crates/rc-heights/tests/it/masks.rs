@@ -175,6 +175,14 @@ fn objects_of_digital_surf_are_surfaces_if_they_have_lines() {
         let error = parse(&of(kind, lines), Format::Sur).expect_err(expected).to_string();
         assert!(error.contains(expected), "{error}");
     }
+    // A profile that is asked for is read, whose axis y has no unit and no step.
+    let profile = build::with(of(1, 1), &[(124, &[0; 4]), (196, &[0; 2])]);
+    let params = rc_heights::ReadParams { is_profile: true, ..rc_heights::ReadParams::default() };
+    let profile = rc_heights::parse_with(&profile, Format::Sur, &params).expect("a profile");
+    // The rows of the surface are reversed.
+    assert_eq!(profile.heights.values()[..3], surface.heights.values()[3..]);
+    let length = profile.sides.expect("sides")[0];
+    assert!((length / 12e-6 - 1.0).abs() < 1e-6, "{length}");
     // A surface beside a profile is read.
     let both = [of(1, 1), of(2, 2)].concat();
     assert_eq!(parse(&both, Format::Sur).map(|map| map.heights), Ok(surface.heights));

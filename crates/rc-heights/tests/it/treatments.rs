@@ -295,3 +295,20 @@ fn treatments_that_need_every_height_say_so() {
         assert!(error.contains("without missing points (this one has 1)") && error.contains("fill"), "{error}");
     }
 }
+
+/// A profile is a map of one row, with a square cell.
+#[test]
+fn profiles_are_levelled_filtered_and_mirrored_along_their_row() {
+    let profile = |height: fn(f64) -> f64| map(200, 1, [2.0, 2.0], |x, _| height(x));
+    let (plane, _) = treated(profile(|x| 3.0 + 0.2 * x), Treatment::Level(Level::Plane));
+    let (quadratic, _) = treated(profile(|x| 3.0 + 0.2 * x - 0.1 * x * x), Treatment::Level(Level::Quadratic));
+    assert!(largest(&plane) < 1e-13 && largest(&quadratic) < 1e-13, "{} and {}", largest(&plane), largest(&quadratic));
+    let (twice, _) = treated(profile(|x| x), Treatment::Periodic(Periodic::Mirror));
+    assert_eq!((twice.heights.grid(), twice.sides), (Grid::new(400, 1).expect("a grid"), Some([4.0, 4.0])));
+    assert!((0..200).all(|i| twice.heights.at(i, 0) == twice.heights.at(399 - i, 0)));
+    let wave: fn(f64) -> f64 = |x| (TAU * 5.0 * x).cos();
+    let (half, _) = treated(profile(wave), Treatment::LowPass { wavelength: 0.2 });
+    for (kept, height) in half.heights.values().iter().zip(profile(wave).heights.values()) {
+        assert!((kept - 0.5 * height).abs() < 1e-6, "{kept} for {height}");
+    }
+}

@@ -34,6 +34,14 @@ pub(crate) trait PreconditionedOperator: BlockOperator<f32> {
         true
     }
 
+    /// Whether rounds keep their number of steps, and may raise the energy for a while.
+    ///
+    /// On profiles, steps in long waves make many elements touch that the next step parts again. Rounds of single
+    /// steps, or of parts of steps, then hardly change the contact.
+    fn keeps_steps(&self) -> bool {
+        false
+    }
+
     /// Sets the elements that the approximate inverse is for from now on.
     fn set_active(&mut self, active: &[bool]);
 

@@ -37,6 +37,7 @@ impl Descent<'_> {
         // borders bend the gap of a start over long distances, so whole regions would join and press.
         let is_periodic = self.boundary() == Boundary::Periodic;
         let is_prepared = is_periodic && self.has_start && self.operators.corrections.extends();
+        let is_prepared = is_prepared && !self.operators.corrections.keeps_steps();
         let is_heavy = is_prepared && sums.n_in_contact() > HEAVY_CONTACT * self.n_cell();
         let steps = if is_heavy { 1 } else { steps };
         let mut set = self.begin_round();

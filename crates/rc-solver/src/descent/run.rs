@@ -18,6 +18,9 @@ const STEPS_PER_ROUND: usize = 2;
 /// Rounds without progress after which the iteration gives up.
 const PATIENCE: usize = 60;
 
+/// Rounds without progress after which the number of steps is not kept any longer.
+const LONG_PATIENCE: usize = 20;
+
 /// An error below this part of the smallest error so far is progress.
 const PROGRESS: f64 = 0.9;
 
@@ -50,13 +53,15 @@ struct ErrorHistory {
     /// From the first round without progress on, it is 1. Where pressures are smooth over many contacts, steps are
     /// large and contacts change under them. Two steps between clippings then lead astray.
     steps: usize,
+    /// Whether [`ErrorHistory::steps`] stays as it is (`PreconditionedOperator::keeps_steps`).
+    keeps_steps: bool,
     /// Whether a round has raised the energy. From then on, no round may.
     has_strayed: bool,
 }
 
 impl ErrorHistory {
-    fn new() -> Self {
-        Self { smallest_error: f64::INFINITY, rounds: 0, steps: STEPS_PER_ROUND, has_strayed: false }
+    fn new(keeps_steps: bool) -> Self {
+        Self { smallest_error: f64::INFINITY, rounds: 0, steps: STEPS_PER_ROUND, keeps_steps, has_strayed: false }
     }
 
     fn note(&mut self, error: f64) {
@@ -64,7 +69,10 @@ impl ErrorHistory {
             (self.smallest_error, self.rounds) = (error, 0);
         } else {
             self.rounds += 1;
-            self.steps = 1;
+            self.keeps_steps &= self.rounds < LONG_PATIENCE;
+            if !self.keeps_steps {
+                self.steps = 1;
+            }
         }
     }
 }
@@ -73,7 +81,7 @@ impl Descent<'_> {
     /// Iterates until the goal is reached, or cannot be reached.
     pub(crate) fn run(&mut self, goal: Goal, watch: &DescentObserver<'_>) -> Outcome {
         let mut sums = self.start();
-        let mut history = ErrorHistory::new();
+        let mut history = ErrorHistory::new(self.operators.corrections.keeps_steps());
         loop {
             let mut error = sums.error(self.problem, self.n_cell());
             self.tell(watch, [error, goal.tolerance], &sums);
@@ -97,7 +105,7 @@ impl Descent<'_> {
             if watch.observer.should_stop() {
                 return self.stopped(goal, sums);
             }
-            let next = if history.has_strayed {
+            let next = if history.has_strayed && !history.keeps_steps {
                 self.descending_round(&sums, watch.observer)
             } else {
                 self.round(history.steps, &sums, watch.observer)

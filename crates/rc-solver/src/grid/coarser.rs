@@ -59,8 +59,11 @@ pub(crate) fn about_halved(finest: Grid, smallest_side: usize) -> impl Iterator<
 fn nested(finest: Grid, smallest_side: usize, next_side: fn(usize) -> Option<usize>) -> impl Iterator<Item = Grid> {
     let next = move |finer: &Grid| {
         let (nx, ny) = (finer.nx(), finer.ny());
-        let is_large = nx.max(ny) >= 2 * smallest_side && nx.min(ny) >= 2 * SMALLEST_WIDTH.min(smallest_side);
-        if is_large { finer.with_elements(next_side(nx)?, next_side(ny)?).ok() } else { None }
+        // A profile has one row on every grid.
+        let is_wide = ny == 1 || nx.min(ny) >= 2 * SMALLEST_WIDTH.min(smallest_side);
+        let next_ny = if ny == 1 { Some(1) } else { next_side(ny) };
+        let is_large = nx.max(ny) >= 2 * smallest_side && is_wide;
+        if is_large { finer.with_elements(next_side(nx)?, next_ny?).ok() } else { None }
     };
     std::iter::successors(Some(finest), next).skip(1)
 }

@@ -8,6 +8,7 @@ pub(crate) mod extension;
 pub(crate) mod full_contact;
 pub(crate) mod interpolation;
 pub(crate) mod inverse;
+pub(crate) mod line;
 pub(crate) mod margin;
 pub(crate) mod operators;
 pub(crate) mod passes;

@@ -6,6 +6,8 @@ use rc_fft::{Convolution, SymbolTable};
 use crate::descent::layout::BlockLayout;
 use crate::descent::operators::{BlockOperator, LevelOperators, PreconditionedOperator};
 use crate::grid::inverse::Inverse;
+use crate::grid::line;
+use crate::grid::line::{LineCorrections, LineOperator};
 use crate::grid::margin::Margin;
 use crate::grid::passes::{layout, read_rows, write_rows};
 use crate::grid::response::GridResponse;
@@ -13,18 +15,35 @@ use crate::grid::response::GridResponse;
 /// The operators L of `kernel` on `grid`.
 pub(crate) fn uniform_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
     let response = GridResponse::of(grid, kernel);
-    LevelOperators {
-        corrections: Box::new(UniformCorrections::new(grid, kernel, &response)),
-        fresh: Box::new(SymbolOperator::of(response)),
+    LevelOperators { corrections: corrections_of(grid, kernel, &response), fresh: operator_of(grid, response) }
+}
+
+/// L of `kernel` with its `response` on `grid`, and its approximate inverse, for corrections.
+pub(crate) fn corrections_of(
+    grid: Grid,
+    kernel: &dyn Kernel,
+    response: &GridResponse,
+) -> Box<dyn PreconditionedOperator> {
+    if line::is_line(grid, response) {
+        Box::new(LineCorrections::new(grid, response))
+    } else {
+        Box::new(UniformCorrections::new(grid, kernel, response))
+    }
+}
+
+/// L of a grid in double precision.
+pub(crate) fn operator_of(grid: Grid, response: GridResponse) -> Box<dyn BlockOperator<f64> + Send> {
+    if line::is_line(grid, &response) {
+        Box::new(LineOperator::new(grid.nx(), response.table))
+    } else {
+        Box::new(SymbolOperator::of(response))
     }
 }
 
 /// The operator L of `kernel` on `grid` for a certificate only, without corrections.
 pub(crate) fn certifying_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
-    LevelOperators {
-        corrections: Box::new(NoCorrections(layout(grid))),
-        fresh: Box::new(SymbolOperator::of(GridResponse::of(grid, kernel))),
-    }
+    let fresh = operator_of(grid, GridResponse::of(grid, kernel));
+    LevelOperators { corrections: Box::new(NoCorrections(fresh.layout())), fresh }
 }
 
 /// No corrections, for a solve that was stopped: it takes no step, so only the layout is asked for.
@@ -51,7 +70,7 @@ impl PreconditionedOperator for NoCorrections {
 }
 
 /// L and its approximate inverse, for corrections.
-pub(crate) struct UniformCorrections {
+struct UniformCorrections {
     /// Convolution of displacements. On periodic cells it serves the approximate inverse too.
     convolution: Convolution<f32>,
     displacement: SymbolTable<f32>,
@@ -62,7 +81,7 @@ pub(crate) struct UniformCorrections {
 
 impl UniformCorrections {
     /// Operators of `kernel` with its `response` on `grid`.
-    pub(crate) fn new(grid: Grid, kernel: &dyn Kernel, response: &GridResponse) -> Self {
+    fn new(grid: Grid, kernel: &dyn Kernel, response: &GridResponse) -> Self {
         let margin = (response.boundary == Boundary::Free).then(|| Margin::around(grid));
         let inverse = match &margin {
             None => Inverse::new(grid, response.table.inverse(grid)),
@@ -126,7 +145,7 @@ impl SymbolOperator {
     }
 
     /// The operator L of a grid.
-    pub(crate) fn of(response: GridResponse) -> Self {
+    fn of(response: GridResponse) -> Self {
         Self { convolution: response.convolution(), symbol: response.table }
     }
 }

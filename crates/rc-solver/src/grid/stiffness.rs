@@ -3,7 +3,7 @@
 use rc_core::{Boundary, Field, Kernel};
 
 use crate::descent::stiffness::{elastic_part, gain, search};
-use crate::grid::operators::UniformCorrections;
+use crate::grid::operators::corrections_of;
 use crate::grid::response::GridResponse;
 use crate::problem::support::Support;
 
@@ -16,8 +16,8 @@ pub(crate) fn contact_stiffness(pressure: &Field, hardness: f64, kernel: &dyn Ke
     if support.boundary == Boundary::Periodic && pressure.iter().all(|&p| p > 0.0) {
         return support.compliance.recip();
     }
-    let mut operator = UniformCorrections::new(grid, kernel, &GridResponse::of(grid, kernel));
-    search(&pressure, (grid.len() as f64, gain(converged)), &mut operator, |_, _| {})
+    let mut operator = corrections_of(grid, kernel, &GridResponse::of(grid, kernel));
+    search(&pressure, (grid.len() as f64, gain(converged)), &mut *operator, |_, _| {})
 }
 
 #[cfg(test)]

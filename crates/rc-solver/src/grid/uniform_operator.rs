@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use rc_core::{Grid, Kernel, Operator};
 
 use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
-use crate::grid::operators::SymbolOperator;
+use crate::grid::operators::operator_of;
 use crate::grid::response::GridResponse;
 
 /// The operator `v = L p` (Eq. 4) on a uniform grid.
@@ -15,7 +15,7 @@ pub struct UniformOperator {
     grid: Grid,
     /// It has plans and the buffer of spectra, so `apply` needs no scratch from the caller. It allows one application
     /// at a time.
-    operator: Mutex<SymbolOperator>,
+    operator: Mutex<Box<dyn BlockOperator<f64> + Send>>,
 }
 
 impl std::fmt::Debug for UniformOperator {
@@ -28,7 +28,7 @@ impl UniformOperator {
     /// The operator of `kernel` on `grid`.
     #[must_use]
     pub fn new(grid: Grid, kernel: &dyn Kernel) -> Self {
-        Self { grid, operator: Mutex::new(SymbolOperator::of(GridResponse::of(grid, kernel))) }
+        Self { grid, operator: Mutex::new(operator_of(grid, GridResponse::of(grid, kernel))) }
     }
 }
 
@@ -46,8 +46,8 @@ impl Operator for UniformOperator {
         assert_eq!(displacement.len(), self.grid.len(), "length of the displacement");
         let mut operator = self.operator.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let block = operator.layout().len();
-        write_blocks(&mut *operator, pressure.chunks(block), |source, rows| rows.copy_from_slice(source));
+        write_blocks(&mut **operator, pressure.chunks(block), |source, rows| rows.copy_from_slice(source));
         operator.apply();
-        read_blocks(&*operator, displacement.chunks_mut(block), |target, rows| target.copy_from_slice(rows));
+        read_blocks(&**operator, displacement.chunks_mut(block), |target, rows| target.copy_from_slice(rows));
     }
 }

@@ -89,8 +89,11 @@ impl<'a> Levels for GridLevels<'a> {
     }
 
     fn values(&self, (descent, outcome): &Self::Solved, above: usize) -> Option<LevelValues> {
-        let sides = |grid: Grid| [grid.nx(), grid.ny()];
-        let is_half = || sides(self.grid(above)).map(|side| 2 * side) == sides(self.grid(above - 1));
+        let is_half = || {
+            let (grid, finer) = (self.grid(above), self.grid(above - 1));
+            // A profile has one row on every grid.
+            2 * grid.nx() == finer.nx() && (2 * grid.ny() == finer.ny() || finer.ny() == 1)
+        };
         (above == self.n_above || is_half()).then(|| LevelValues {
             rms_pressure: rms(descent.pressure(), PIECE),
             penetration: self.problem.h_max + outcome.approach,

@@ -51,6 +51,8 @@ pub enum Feature {
     BorderLevel,
     /// A wanted error of the contact area.
     AreaError,
+    /// A grid of one row: the line contact of a profile, in plane strain.
+    Line,
     /// The flow through the gap.
     Leakage,
     /// Several processes or threads that share the solve.
@@ -67,8 +69,8 @@ pub enum Feature {
 
 use Feature::{
     AreaError, BorderLevel, Checkpoint, DryRun, Flat, FreeBorders, Hardness, HeightMap, KernelFunction, Layer, Leakage,
-    OblongElements, OblongGrid, OtherSolid, OwnKernel, OwnOperator, Penetration, Ranks, Spectral, Sweep, UnevenGrid,
-    Watch,
+    Line, OblongElements, OblongGrid, OtherSolid, OwnKernel, OwnOperator, Penetration, Ranks, Spectral, Sweep,
+    UnevenGrid, Watch,
 };
 
 /// Why a method does not take a feature; `None` if it does.
@@ -88,10 +90,11 @@ const LAYER: Not = Some("a layer has no adaptive form");
 const SQUARE: Not = Some("the adaptive method needs square elements");
 const OF_LOVE: Not = Some("it needs the coefficients of the kernel love on the half-space");
 const HALVES: Not = Some("only the adaptive method halves elements at the edges of contacts");
+const OF_MAPS: Not = Some("its mesh divides the area of a map, and a profile has none");
 const DIVIDED: Not = Some("only the adaptive method runs on several ranks");
 
 /// The rows of the table.
-const ROWS: [Row; 22] = [
+const ROWS: [Row; 23] = [
     (Spectral, "kernel", "the kernel spectral", [SPECTRAL, None, OF_LOVE]),
     (OwnKernel, "kernel", "a kernel without a split by scale", [NO_FORM, None, OF_LOVE]),
     (OtherSolid, "kernel", "another solid with a split by scale", [None, None, OF_LOVE]),
@@ -113,6 +116,7 @@ const ROWS: [Row; 22] = [
     (UnevenGrid, "grid", "a grid that cannot be halved several times", ALL),
     (BorderLevel, "border_level", "a border level", [None, HALVES, HALVES]),
     (AreaError, "area_error", "a wanted error of the area", ALL),
+    (Line, "line", "the line contact of a profile", [OF_MAPS, None, OF_MAPS]),
     (Leakage, "leakage", "the flow through the gap", ALL),
     (Ranks, "ranks", "several ranks", [None, DIVIDED, DIVIDED]),
     (Checkpoint, "checkpoint", "a checkpoint", ALL),
@@ -122,7 +126,7 @@ const ROWS: [Row; 22] = [
 ];
 
 /// Features that exclude each other with every method. The message names the key of the first.
-const PAIRS: [(Feature, Feature, &str); 20] = [
+const PAIRS: [(Feature, Feature, &str); 24] = [
     (Spectral, FreeBorders, "its waves are periodic"),
     (FreeBorders, KernelFunction, "the function describes a periodic cell"),
     (FreeBorders, Layer, "the response of a layer is known in a periodic cell only"),
@@ -137,6 +141,10 @@ const PAIRS: [(Feature, Feature, &str); 20] = [
     (AreaError, Checkpoint, "it solves on several grids (give grid instead)"),
     (AreaError, Sweep, "rc solve chooses a grid for each solve (give grid instead)"),
     (AreaError, DryRun, "its grid is not known before the solve (give grid instead)"),
+    (Line, FreeBorders, "a load on a line displaces a half-plane without limit, so the profile is periodic"),
+    (Line, Layer, "its error bars are those of the half-plane"),
+    (Line, Hardness, "its error bars are those of elastic edges"),
+    (Line, Leakage, "each contact of a profile closes the gap along its whole width"),
     (Watch, DryRun, "a dry run has no contact to show"),
     (Watch, Ranks, "no rank has the whole contact while it is solved"),
     (Leakage, Ranks, "the flow is not solved over ranks"),

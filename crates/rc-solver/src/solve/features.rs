@@ -18,6 +18,7 @@ pub(super) fn features(problem: &ContactProblem<'_>, params: &SolveParams) -> Ve
     let is_layer = kernel.uniform_displacement().is_some();
     let (has_border, has_ranks) = (params.border_level > 0, problem.is_shared());
     let all = [
+        (Feature::Line, heights.grid().ny() == 1 && problem.boundary() == Boundary::Periodic),
         (Feature::Layer, is_layer),
         (Feature::OwnKernel, !is_layer && kernel.split().is_none()),
         (Feature::OtherSolid, kernel.split().is_some_and(|split| split.deviates_below(0.0) > 0.0)),

@@ -42,6 +42,7 @@ fn product<T: Clone>(all: &[Vec<T>], choices: &[T]) -> Vec<Vec<T>> {
 fn planned(asked: &[Option<Feature>], method: Option<Method>, ranks: Ranks) -> Option<(Subject, Feature)> {
     let has = |feature| asked.contains(&Some(feature));
     let grid = match () {
+        () if has(Feature::Line) => Grid::new(64, 1),
         () if has(Feature::OblongElements) => Grid::in_cell(64, 64, 1.5),
         () if has(Feature::OblongGrid) => Grid::in_cell(128, 64, 0.5),
         () if has(Feature::UnevenGrid) => Grid::square(100),
@@ -80,6 +81,7 @@ fn plans_are_refused_exactly_as_the_table_says() {
             &[Some(Feature::OblongGrid)],
             &[Some(Feature::OblongGrid), Some(Feature::OblongElements)],
             &[Some(Feature::UnevenGrid)],
+            &[Some(Feature::Line), Some(Feature::OblongGrid), Some(Feature::OblongElements)],
         ],
         &[&[None], &[Some(Feature::Hardness)]],
         &[&[None], &[Some(Feature::BorderLevel)]],
@@ -93,6 +95,11 @@ fn plans_are_refused_exactly_as_the_table_says() {
         let features: Vec<_> = asked.iter().copied().flatten().collect();
         // A flat surface has no penetration in a periodic cell.
         if features.contains(&Feature::Flat) && features.contains(&Feature::Penetration) {
+            continue;
+        }
+        // A profile has no waves along y, and with free borders one row is a strip of a surface.
+        let has = |feature| features.contains(&feature);
+        if has(Feature::Line) && (!has(Feature::HeightMap) || has(Feature::FreeBorders)) {
             continue;
         }
         for method in [None, Some(Method::Adaptive), Some(Method::Uniform), Some(Method::GaussSeidel)] {

@@ -24,7 +24,7 @@ impl SurfaceKeys {
             (lower.psd, lower.psd_convention, lower.like, lower.heights_like) = (None, None, None, None);
             lower = Self { heights: None, spectrum: None, unit: None, height_scale: None, cell_y: None, ..lower };
             (lower.channel, lower.layout, lower.height_unit) = (None, None, None);
-            (lower.missing, lower.mask) = (None, None);
+            (lower.missing, lower.mask, lower.line) = (None, None, false);
         }
         if self.cell.is_some() {
             lower.cell_y = None;
@@ -40,6 +40,7 @@ impl SurfaceKeys {
             shape, radius, angle, wavelength, wave_amplitude, add, cell, cell_y, heights, spectrum, psd, psd_convention, like, heights_like, unit, height_unit, height_scale, missing, mask, channel, layout, waves, hurst, rms, rms_slope,
             c0, seed, truncation, roll_off, low_cut, amplitudes, grid, read_limit
         });
+        self.line |= lower.line;
         self
     }
 }

@@ -42,6 +42,7 @@ impl SurfaceKeys {
             channel: self.channel.clone(),
             layout: self.layout,
             row_is_map: self.cell.is_some() && self.cell_y.is_some(),
+            is_profile: self.line,
             missing: self.missing.as_ref().map(|marks| marks.0.clone()).unwrap_or_default(),
             mask: self.mask.unwrap_or_default(),
             max_bytes: read_limit(self.read_limit),

@@ -27,6 +27,12 @@ pub fn layers(file: Option<&Path>, flags: Scene) -> Result<Scene, CliError> {
             flags.over(lower)
         }
     };
+    if scene.surface.line && scene.contact.force.is_some() {
+        return Err(CliError::input(
+            "force: a line contact has a force per length; give pressure (Pa), which is that force divided by the length of \
+             the profile",
+        ));
+    }
     scene.surface.read_limit = scene.run.memory_limit;
     Ok(scene)
 }

@@ -25,7 +25,7 @@ const ELEMENTS_PER_WAVE: f64 = 4.0;
 /// [`CliError::Input`].
 pub(super) fn like(keys: SurfaceKeys, like: &Path) -> Result<SurfaceSetup, CliError> {
     if let Some(profile) = Profile::read(like, &keys)? {
-        return of_profile(keys, like, &profile);
+        return of_profile(keys, like, &profile.complete(like)?);
     }
     let map = read_map(like, &keys)?;
     match Profile::of_map(&file_of(like), &map)? {
@@ -57,7 +57,7 @@ fn of_profile(keys: SurfaceKeys, like: &Path, profile: &Profile) -> Result<Surfa
     let keys = SurfaceKeys { cell: Some(side), heights_like: None, unit, height_unit, height_scale, ..keys };
     let keys = SurfaceKeys { missing, mask, channel, layout, ..keys };
     let mut setup = realisation(keys, (like.to_owned(), table), cell, grid)?;
-    if profile.is_assumed {
+    if profile.is_assumed() {
         setup.assumed.push("metres for the profile, which names no unit; --unit says otherwise".to_owned());
     }
     Ok(setup)

@@ -64,7 +64,12 @@ fn size(surface: &SurfaceKeys) -> Result<Option<&'static str>, CliError> {
         // The size of a twin is that of its map, which is read later.
         None => surface.cell.is_some() || surface.spectrum.is_none() && surface.psd.is_none() && !surface.is_shape(),
     };
-    Ok((!is_known).then_some(CELL))
+    match &surface.heights {
+        Some(path) if !is_known && rc_heights::has_profile(path, &surface.read_params())? => {
+            Err(CliError::in_file(path, "a profile, not a map; give --line for the line contact of a profile"))
+        }
+        _ => Ok((!is_known).then_some(CELL)),
+    }
 }
 
 /// The missing keys of the material.

@@ -40,9 +40,16 @@ pub fn surface(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
         return Ok(SurfaceSetup { form: form(&setup.keys, setup.cell)?, ..setup });
     }
     let Some(path) = keys.heights.clone() else { return surface_in_cell(keys) };
+    if keys.line && keys.cell_y.is_some_and(|side| keys.cell.is_none_or(|cell| !heights::same(side, cell))) {
+        return Err(CliError::input("cell_y: a profile has no side along y; omit cell_y"));
+    }
     // Only the whole file tells the sides and the numbers of points. It is not read again.
     let map = heights::read(&path, &keys.read_params(), keys.scales())?;
-    let CellOfMap { cell, cell_y, assumed } = CellOfMap::of(&path, &map, [keys.cell, keys.cell_y])?;
+    let CellOfMap { cell, cell_y, assumed } =
+        CellOfMap::of(&path, &map, [keys.cell, if keys.line { keys.cell } else { keys.cell_y }])?;
+    if keys.line && cell.is_none() {
+        return Err(CliError::in_file(&path, "a profile without places; give cell (m), the length of the profile"));
+    }
     let setup = surface_in_cell(SurfaceKeys { cell, cell_y, ..keys })?;
     Ok(SurfaceSetup { assumed, held: Arc::new(Mutex::new(Some(map))), ..setup })
 }
@@ -80,6 +87,9 @@ pub fn surface_in_cell(keys: SurfaceKeys) -> Result<SurfaceSetup, CliError> {
 fn check_companions(keys: &SurfaceKeys) -> Result<(), CliError> {
     if keys.psd_convention.is_some() && keys.psd.is_none() {
         return Err(CliError::input("psd_convention: applies to tables of a spectrum; give --psd FILE, or omit it"));
+    }
+    if keys.line && keys.heights.is_none() {
+        return Err(CliError::input("line: applies to profiles; give --heights FILE with a profile, or omit line"));
     }
     if keys.heights_like.is_some() && keys.like.is_none() {
         return Err(CliError::input("heights_like: applies to twins; give --like FILE, or omit it"));

@@ -23,13 +23,12 @@ impl Parts {
         Self { own: parallel::zeros(n), rest: parallel::zeros(n) }
     }
 
-    /// Sets the factors of squares, of whose elements these `parts` are active.
-    pub(crate) fn set(&mut self, parts: &[f32]) {
+    /// Sets the factors of squares, of whose elements these `parts` are active. They count by this `weight`.
+    pub(crate) fn set(&mut self, parts: &[f32], weight: impl Fn(f32) -> f32 + Sync) {
         let blocks = self.own.chunks_mut(TASK).zip(self.rest.chunks_mut(TASK)).zip(parts.chunks(TASK));
         parallel::for_each(blocks, |((own, rest), parts)| {
             for ((own, rest), &x) in own.iter_mut().zip(rest).zip(parts) {
-                // `docs/constants.md` compares x^(3/4) with other powers.
-                let part = x.sqrt() * x.sqrt().sqrt();
+                let part = weight(x);
                 // The mean over all elements is x times the mean over the active ones.
                 [*own, *rest] = if x > 0.0 { [part / x, 1.0 - part] } else { [0.0, 1.0] };
             }
@@ -121,16 +120,16 @@ impl Shares<'_> {
 
 /// Means over squares from the two rows of their parts. The second row may be missing.
 ///
-/// `value` is applied to each part.
-pub(super) fn means<T: Copy>(rows: [Option<&[T]>; 2], value: impl Fn(T) -> f32, means: &mut [f32]) {
+/// `value` is applied to each part, which has this `share` of a square.
+pub(super) fn means<T: Copy>(rows: [Option<&[T]>; 2], share: f32, value: impl Fn(T) -> f32, means: &mut [f32]) {
     means.fill(0.0);
     for row in rows.into_iter().flatten() {
         let (pairs, rest) = row.as_chunks::<2>();
         for (mean, &[a, b]) in means.iter_mut().zip(pairs) {
-            *mean += 0.25 * (value(a) + value(b));
+            *mean += share * (value(a) + value(b));
         }
         if let (Some(mean), &[last]) = (means.last_mut(), rest) {
-            *mean += 0.25 * value(last);
+            *mean += share * value(last);
         }
     }
 }
@@ -159,12 +158,12 @@ pub(super) fn interpolate(values: &[f32], width: usize, iy: usize, line: &mut Ve
     }
 }
 
-/// Row `iy` of `height` rows of squares, by a quarter of the transpose of [`interpolate`].
+/// Row `iy` of `height` rows of squares, by the transpose of [`interpolate`] times the `share` of a part.
 ///
 /// `add_part(weight, y, line)` adds a multiple of row `y` of the `n` rows of parts to a line of `width` values.
 pub(super) fn collect(
     [width, n]: [usize; 2],
-    [iy, height]: [usize; 2],
+    ([iy, height], share): ([usize; 2], f32),
     add_part: impl Fn(f32, usize, &mut [f32]),
     squares: &mut [f32],
 ) {
@@ -174,7 +173,7 @@ pub(super) fn collect(
     let [before, after] = [(iy + height - 1) % height, (iy + 1) % height];
     for (y, weight) in [(2 * before + 1, 0.25), (2 * iy, 0.75), (2 * iy + 1, 0.75), (2 * after, 0.25)] {
         if y < n {
-            add_part(0.25 * weight, y, &mut line[1..=width]);
+            add_part(share * weight, y, &mut line[1..=width]);
         }
     }
     line[0] = line[padded - 2];

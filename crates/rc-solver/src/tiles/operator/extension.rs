@@ -18,7 +18,7 @@ use pulp::Arch;
 use rc_fft::Convolution;
 use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE};
 
-use crate::grid::extension::pyramid::Extension;
+use crate::grid::extension::pyramid::{Extension, of_part};
 use crate::grid::extension::rows::{Parts, Shares};
 use crate::grid::passes::{read_rows, write_rows};
 use crate::parallel;
@@ -73,7 +73,7 @@ impl TileExtension {
     pub(super) fn set_active(&mut self, active: &[bool], finest: &mut [f32]) {
         self.take_means(|cell| f32::from(u8::from(active[cell])), finest);
         for (level, Level { parts, values, .. }) in self.levels.iter_mut().enumerate() {
-            parts.set(if level == 0 { &self.rows } else { values });
+            parts.set(if level == 0 { &self.rows } else { values }, of_part);
         }
         self.coarser.set_active(&self.rows, |part| part);
     }

@@ -1,0 +1,167 @@
+//! Profiles: line contact, parameters and spectra.
+
+use std::f64::consts::{PI, TAU};
+
+use serde_json::Value;
+
+use crate::solve::assert_close;
+use crate::support::{Place, assert_refused, assert_solved, f8, npy, text};
+
+/// Points of the wave.
+const N: u32 = 1024;
+
+/// A wave of 1 µm on 1 mm: the height at a point.
+fn height(i: u32) -> f64 {
+    1e-6 * (TAU * (f64::from(i) + 0.5) / f64::from(N)).cos()
+}
+
+/// Lines x z of the wave, in m divided by these units.
+fn lines(titles: &str, units: [f64; 2]) -> String {
+    let line = |i: u32| format!("{:.9},{:.9}\n", 1e-3 * f64::from(i) / f64::from(N) / units[0], height(i) / units[1]);
+    titles.to_owned() + &(0..N).map(line).collect::<Vec<_>>().concat()
+}
+
+/// Half of the load of full contact, π E* h/λ.
+fn half() -> String {
+    (0.5 * PI * 1e9 * 1e-3).to_string()
+}
+
+/// The summary of a solve of this file.
+fn solved(place: &Place, file: &str, more: &[&str]) -> Value {
+    let half = half();
+    let args = ["solve", file, "--line", "--e-star", "1e9", "--pressure", &half, "--quiet", "--json"];
+    let output = place.run(&[&args[..], more].concat());
+    assert_solved(&output);
+    serde_json::from_slice(&output.stdout).expect("valid JSON")
+}
+
+fn number(record: &Value, key: &str) -> f64 {
+    record[key].as_f64().unwrap_or_else(|| panic!("{key}: {}", record[key]))
+}
+
+#[test]
+fn half_of_a_wave_touches_in_every_file_of_the_profile() {
+    let place = Place::new();
+    place.write("wave.csv", lines("x (um),z (nm)\n", [1e-6, 1e-9]));
+    place.write("bare.txt", (0..N).map(|i| format!("{:e}\n", height(i))).collect::<Vec<_>>().concat());
+    let heights: Vec<u8> = (0..N).flat_map(|i| height(i).to_le_bytes()).collect();
+    place.write("wave.npy", npy("<f8", false, "(1024,)", &heights));
+    let cell = ["--cell", "1mm"];
+    for (file, more) in [("wave.csv", &[][..]), ("bare.txt", &cell), ("wave.npy", &cell)] {
+        for kernel in ["love", "spectral"] {
+            let summary = solved(&place, file, &[more, &["--kernel", kernel]].concat());
+            let (area, error) = (number(&summary, "area_fraction"), number(&summary, "area_fraction_error"));
+            assert!((area - 0.5).abs() < error && error < 2e-3, "{file}, {kernel}: {area} ± {error}");
+            assert_eq!(summary["grid"], serde_json::json!([N, 1]));
+        }
+    }
+    solved(&place, "wave.csv", &["--out", "r"]);
+    assert!(text(&place.bytes("r/pressure.npy")[..128]).contains("(1, 1024, )"), "one row");
+    let again = place.run(&["solve", "r", "--quiet", "--out", "again"]);
+    assert_solved(&again);
+    assert_eq!(place.bytes("r/pressure.npy"), place.bytes("again/pressure.npy"));
+}
+
+#[test]
+fn what_a_line_contact_has_not_is_refused() {
+    let place = Place::new();
+    place.write("wave.csv", lines("x (um),z (nm)\n", [1e-6, 1e-9]));
+    place.write("bare.txt", "1\n2\n3\n4\n");
+    place.write("uneven.csv", "x (um),z (nm)\n0,1\n1,2\n4,1\n5,3\n");
+    place.write("hole.csv", "x (um),z (nm)\n0,1\n1,nan\n2,1\n3,3\n");
+    let map: Vec<f64> = (0..64).map(|i| f64::from(i * i % 7)).collect();
+    place.write("map.npy", npy("<f8", false, "(8, 8)", &map.iter().flat_map(|h| h.to_le_bytes()).collect::<Vec<_>>()));
+    let cases: [(&str, &[&str], &str); 12] = [
+        ("wave.csv", &["--leakage"], "the line contact of a profile cannot be combined with the flow"),
+        (
+            "wave.csv",
+            &["--layer-thickness", "1mm", "--layer-poisson", "0.3"],
+            "cannot be combined with an elastic layer",
+        ),
+        ("wave.csv", &["--hardness", "1e9"], "cannot be combined with a hardness"),
+        ("wave.csv", &["--boundary", "free"], "cannot be combined with free borders"),
+        ("wave.csv", &["--method", "adaptive"], "a profile has none"),
+        ("wave.csv", &["--cell-y", "1mm"], "no side along y"),
+        ("wave.csv", &["--cell", "2mm"], "cell says 2 mm"),
+        ("bare.txt", &[], "a profile without places; give cell (m)"),
+        ("uneven.csv", &[], "from point 1 to 2 it is 1, and in the mean 1.66667"),
+        ("hole.csv", &[], "column 1 (from 0) is NaN"),
+        ("map.npy", &["--cell", "1mm"], "a map of 8 x 8 points, not a profile"),
+        ("none.csv", &[], "none.csv"),
+    ];
+    for (file, more, expected) in cases {
+        let args = ["solve", "--heights", file, "--line", "--e-star", "1e9", "--pressure", "1e5"];
+        assert_refused(&place.run(&[&args[..], more].concat()), expected);
+    }
+    let force = ["solve", "wave.csv", "--line", "--e-star", "1e9", "--force", "10N"];
+    assert_refused(&place.run(&force), "force per length");
+    let waves = ["solve", "--line", "--waves", "8", "--pressure", "1e5"];
+    assert_refused(&place.run(&waves), "line: applies to profiles");
+    assert_refused(&place.run(&["solve", "wave.csv", "--e-star", "1e9", "--pressure", "1e5"]), "give --line");
+    assert_refused(&place.run(&["inspect", "map.npy", "--lambda-c", "1um"]), "lambda_c: applies to profiles");
+}
+
+#[test]
+fn a_profile_has_the_parameters_of_the_standard_with_and_without_filters() {
+    let place = Place::new();
+    // A wave of 1 µm on 0.8 mm, and one of 50 nm on 20 µm, over 8.2 mm. The
+    // part between half of λc = 0.2 mm from both ends has whole waves. The other parts miss a quarter of the long wave.
+    let wave = |x: f64| 1e-6 * (TAU * x / 0.8e-3).cos() + 50e-9 * (TAU * x / 20e-6).cos();
+    let n = 8200;
+    let line = |i: u32| format!("{:.3};{:.6}\n", f64::from(i), 1e9 * wave(1e-6 * f64::from(i)));
+    place.write("waves.csv", "x [um];z [nm]\n".to_owned() + &(0..n).map(line).collect::<Vec<_>>().concat());
+    let inspect = |more: &[&str]| {
+        let output = place.run(&[&["inspect", "waves.csv", "--json"], more].concat());
+        assert_solved(&output);
+        serde_json::from_slice::<Value>(&output.stdout).expect("valid JSON")
+    };
+    let plain = inspect(&[]);
+    assert_close("Rq", number(&plain, "Rq"), (0.5e-12_f64 + 0.5 * 2.5e-15).sqrt(), 1e-3);
+    assert_eq!(plain["Ra"], plain["Pa"]);
+    // The short wave keeps 1 - 2^-(λc/λ)² of its amplitude, which is all, and the long one 1 - 2^-(1/16).
+    let fine = inspect(&["--lambda-c", "0.2mm", "--psd-out", "psd.csv", "--out", "look"]);
+    let kept = 1.0 - 0.5_f64.powf((0.2_f64 / 0.8).powi(2));
+    let expected = (0.5 * (kept * 1e-6_f64).powi(2) + 0.5 * 50e-9_f64.powi(2)).sqrt();
+    assert_close("Rq", number(&fine, "Rq"), expected, 2e-3);
+    assert_eq!(fine["Pq"], plain["Pq"]);
+    assert_close("evaluation length", number(&fine, "evaluation_length"), 8e-3, 1e-9);
+    assert_eq!(fine["sections"], 40);
+    // λs of 80 µm takes the short wave away.
+    let smooth = inspect(&["--lambda-s", "80um"]);
+    let left = 0.5_f64.powf((0.08_f64 / 0.8).powi(2));
+    assert_close("Rq", number(&smooth, "Rq"), left * 1e-6 / 2.0_f64.sqrt(), 2e-3);
+    for (key, value) in [("Ra", 2.0 / PI), ("Rz", 2.0)] {
+        assert_close(key, number(&smooth, key), left * 1e-6 * value, 5e-3);
+    }
+    assert_eq!(place.bytes("psd.csv"), place.bytes("look/psd.csv"));
+    let surface = place.run(&["surface", "--psd", "psd.csv", "--cell", "0.5mm", "--grid", "1024", "--out", "surface"]);
+    assert_solved(&surface);
+    assert_eq!(place.names("look"), ["profile.png", "profile.svg", "psd.csv", "spectrum.png", "spectrum.svg"]);
+    for (args, expected) in [
+        (["--lambda-c", "5mm"], "lambda_c: must be from two steps"),
+        (["--lambda-s", "1um"], "lambda_s: must be from two steps"),
+    ] {
+        assert_refused(&place.run(&[&["inspect", "waves.csv"][..], &args].concat()), expected);
+    }
+}
+
+#[test]
+fn holes_and_units_of_a_profile_are_told() {
+    let place = Place::new();
+    let line = |i: u32| if i == 7 { format!("{i},\n") } else { format!("{i},{}\n", i * i % 11) };
+    place.write("hole.csv", "x (um),z (nm)\n".to_owned() + &(0..40).rev().map(line).collect::<Vec<_>>().concat());
+    let output = place.run(&["inspect", "hole.csv"]);
+    assert_solved(&output);
+    let told = text(&output.stdout);
+    assert!(told.contains("40 points, 1 missing, step 1 µm") && told.contains("points are reversed"), "{told}");
+    assert!(told.contains("straight lines over missing points"), "{told}");
+    assert_solved(&place.run(&["surface", "--heights", "hole.csv", "--line", "--fill", "laplace", "--out", "filled"]));
+    let solve = ["solve", "filled", "--e-star", "1e9", "--pressure", "1e5", "--quiet", "--json"];
+    let output = place.run(&solve);
+    assert_solved(&output);
+    let summary: Value = serde_json::from_slice(&output.stdout).expect("valid JSON");
+    assert_eq!(summary["grid"], serde_json::json!([40, 1]));
+    let bare: Vec<f64> = (0..40).map(|i| f64::from(i * i % 11)).collect();
+    place.write("bare.npy", npy("<f8", false, "(40, 1)", &f8(&bare.iter().map(|h| *h as f32).collect::<Vec<_>>())));
+    assert_solved(&place.run(&["inspect", "bare.npy", "--cell", "40um", "--height-scale", "1nm"]));
+}
