@@ -1,6 +1,6 @@
 //! Means of the contact area over the seeds of a sweep, as text.
 
-use rc_core::quantity::digits;
+use rc_core::quantity::{digits, engineering};
 use rc_sweep::{Cells, SweepRows};
 use serde_json::Value;
 
@@ -35,9 +35,10 @@ fn problem(cells: &Cells) -> String {
     let number = |value: &Value| value.as_f64().map(|value| digits(value, 6));
     let text = |value: &Value| number(value).or(value.as_str().map(str::to_owned)).unwrap_or_else(|| value.to_string());
     let keys = cells.iter().take_while(|(key, _)| *key != "status").filter(|(key, _)| *key != "seed");
-    let keys = keys.map(|(key, value)| {
-        let name = if key == "control_value" { control } else { key.as_str() };
-        format!("{name} {}", text(value))
+    let unit = if control == "penetration" { "m" } else { "Pa" };
+    let keys = keys.map(|(key, value)| match value.as_f64() {
+        Some(load) if key == "control_value" => format!("{control} {}", engineering(load, unit)),
+        _ => format!("{key} {}", text(value)),
     });
     keys.collect::<Vec<_>>().join(", ")
 }
@@ -68,7 +69,7 @@ mod tests {
         let areas = [(1, 1e5, 0.01), (2, 1e5, 0.02), (3, 1e5, 0.03), (1, 2e5, 0.5), (2, 2e5, 0.5)];
         let rows: SweepRows =
             areas.into_iter().enumerate().map(|(i, (seed, load, area))| (i, row(seed, load, area))).collect();
-        let expected = "  pressure 1.00000e5: contact area (2.0 ± 0.6) %, from 1 to 3 %, of 3 seeds\n";
+        let expected = "  pressure 100 kPa: contact area (2.0 ± 0.6) %, from 1 to 3 %, of 3 seeds\n";
         assert_eq!(over_seeds(&rows), expected);
     }
 }

@@ -206,8 +206,8 @@ pub(crate) fn mirrored(map: &HeightMap, treatments: &[Treatment]) -> Option<Warn
     let texture = Texture::of(&measured, &hann(&measured));
     let aspect = texture.aspect.filter(|_| texture.has_lay())?;
     let text = format!(
-        "the map has a lay (Str {} {}), which its mirror images continue in other directions, so that flows and conductances \
-         across the borders are not those of the surface; a patch with --boundary free has no mirror images",
+        "the map has a lay (Str {} {}), which its mirror images turn or double at the borders, so that flows and conductances \
+         across them are not those of the surface; a patch with --boundary free has no mirror images",
         if aspect.is_bound { "below" } else { "=" },
         digits(aspect.ratio, 2)
     );

@@ -71,7 +71,8 @@ fn prepare(place: &Place) {
 }
 
 /// Warnings of documented commands: a part of the command, and the beginning of what it tells.
-const EXPECTED: [(&str, &str); 0] = [];
+const EXPECTED: [(&str, &str); 2] =
+    [("rc prepare map.npy", "the map has a lay"), ("rc study map.npy", "the map has a lay")];
 
 /// Fails unless a command tells the warnings that are expected of it, and no others.
 fn assert_expected(command: &str, told: &str) {

@@ -208,7 +208,15 @@ fn inspect_draws_a_map_of_any_shape() {
     let output = place.run(&["inspect", "map.xyz", "--unit", "um", "--out", "look"]);
     assert_solved(&output);
     assert!(text(&output.stdout).contains("8 µm by 6 µm with 8 x 6 elements"), "{}", text(&output.stdout));
-    let pictures = ["distribution.png", "distribution.svg", "spectrum.png", "spectrum.svg", "surface.png"];
+    let pictures = [
+        "distribution.png",
+        "distribution.svg",
+        "material_ratio.png",
+        "material_ratio.svg",
+        "spectrum.png",
+        "spectrum.svg",
+        "surface.png",
+    ];
     assert_eq!(place.names("look"), pictures);
 }
 
@@ -221,7 +229,11 @@ fn channels_are_listed_and_one_of_them_is_read() {
     assert_solved(&output);
     let printed = text(&output.stdout);
     assert!(printed.contains("heights      Height, read") && printed.contains("missing            1 of "), "{printed}");
-    assert_eq!(place.names("look"), ["distribution.png", "distribution.svg", "surface.png"], "no spectrum");
+    assert_eq!(
+        place.names("look"),
+        ["distribution.png", "distribution.svg", "material_ratio.png", "material_ratio.svg", "surface.png"],
+        "no spectrum"
+    );
     let output = place.run(&["inspect", &stack, "--channel", "phase", "--height-scale", "1e-9"]);
     assert_solved(&output);
     let printed = text(&output.stdout);

@@ -175,7 +175,17 @@ fn what_a_study_cannot_compare_is_refused_before_it_is_solved() {
     assert_refused(&refused, "force: the maps of a study differ in size");
     assert_refused(&refused, "are --pressures 1e6");
     // The lowest height in the hole is doubtful, but that treatment is one of the others.
-    assert_solved(&place.run(&study(&["--pressures", "1e7", "--strict", "--quiet", "--out", "s"])));
+    assert_solved(&place.run(&study(&[
+        "--pressures",
+        "1e7",
+        "--no-periodic",
+        "--boundary",
+        "free",
+        "--strict",
+        "--quiet",
+        "--out",
+        "s",
+    ])));
     let large = study(&["--pressures", "1e4,5e8", "--strict", "--out", "t"]);
     assert_refused(&place.run(&large), "nothing was solved or written");
     let prepare = [&["prepare"], &STUDY[1..6], &["--quiet", "--out", "ready"]].concat();

@@ -51,7 +51,15 @@ fn inspect_measures_what_surface_made() {
         assert_solved(&output);
         assert_eq!(serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("JSON"), made);
     }
-    let pictures = ["distribution.png", "distribution.svg", "spectrum.png", "spectrum.svg", "surface.png"];
+    let pictures = [
+        "distribution.png",
+        "distribution.svg",
+        "material_ratio.png",
+        "material_ratio.svg",
+        "spectrum.png",
+        "spectrum.svg",
+        "surface.png",
+    ];
     assert_solved(&place.run(&["plot", "s", "--out", "pictures"]));
     assert_eq!(place.names("pictures"), pictures);
     assert_solved(&place.run(&["report", "s"]));

@@ -131,8 +131,9 @@ fn filled_points_are_doubted_also_when_the_folder_is_solved() {
     place.write("holes.npy", npy("<f8", false, "(64, 64)", &f8(&holed)));
     let treat = ["surface", "--heights", "holes.npy", "--cell", "1e-3", "--level", "plane", "--fill", "laplace"];
     assert_solved(&place.run(&[&treat[..], &["--periodic", "mirror", "--quiet", "--out", "ready"]].concat()));
-    assert_eq!(codes(&place.json("ready/surface.json")), ["missing"]);
-    assert_eq!(solved(&place, &["ready", "--e-star", "1e9", "--pressure", "1e5"]), ["missing"]);
+    // The waves of the map are steeper along x, which is a lay.
+    assert_eq!(codes(&place.json("ready/surface.json")), ["missing", "mirror"]);
+    assert_eq!(solved(&place, &["ready", "--e-star", "1e9", "--pressure", "1e5"]), ["mirror", "missing"]);
     let holes = place.run(&["inspect", "holes.npy", "--cell", "1e-3", "--json"]);
     assert_solved(&holes);
     let record: serde_json::Value = serde_json::from_slice(&holes.stdout).expect("JSON");

@@ -90,7 +90,7 @@ mod tests {
     fn what_is_missing_is_named() {
         let dir = tempfile::tempdir().expect("a temporary folder");
         let path = dir.path().join("map.csv");
-        std::fs::write(&path, "1,2\n3,4\n").expect("a map without a size");
+        std::fs::write(&path, "1,2,3,4\n5,6,7,8\n").expect("a map without a size");
         let map = |cell| SurfaceKeys { heights: Some(path.clone()), cell, ..SurfaceKeys::default() };
         let material = |e_star, young, poisson| ContactKeys { young, poisson, e_star, ..ContactKeys::default() };
         let none = material(None, None, None);
