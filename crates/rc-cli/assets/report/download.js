@@ -72,10 +72,10 @@ async function saveChartPng(chart, name) {
 /** The links below a chart. */
 function chartDownloads(chart) {
   const name = (ending) => fileName(`${chart.y.label} ${chart.x.label}`, ending);
-  return make("span", { class: "downloads" }, "download ",
-    downloadLink("CSV", () => saveText(chartTable(chart), "text/csv", name("csv"))), " ",
-    downloadLink("SVG", () => saveText(chartSvg(chart).text, "image/svg+xml", name("svg"))), " ",
-    downloadLink("PNG", () => saveChartPng(chart, name("png"))));
+  return make("span", { class: "downloads" },
+    downloadLink("download CSV", () => saveText(chartTable(chart), "text/csv", name("csv"))),
+    downloadLink("download SVG", () => saveText(chartSvg(chart).text, "image/svg+xml", name("svg"))),
+    downloadLink("download PNG", () => saveChartPng(chart, name("png"))));
 }
 
 /** A map as a picture with its title and its colours. */

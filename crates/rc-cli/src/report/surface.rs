@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use rc_core::{Field, Grid};
 use rc_core::quantity::{digits, engineering};
+use rc_core::{Field, Grid};
 use rc_plot::{Palette, range_of_most};
 use serde::Serialize;
 
@@ -84,7 +84,7 @@ impl SurfaceBody {
             heights: EmbeddedField::of_gap(&pixels, pixels.max(), Bits::Sixteen, Palette::Viridis),
             span: range_of_most(&pixels),
             lowest: lowest * record.cell,
-            note: note(heights.grid(), pixels.grid(), mirrored),
+            note: note(heights.grid(), pixels.grid(), mirrored) + &of_fewer(heights.grid(), record.grid),
             mirrored,
             spectrum: spectrum(record),
             law: law(record),
@@ -112,6 +112,14 @@ fn note(grid: Grid, pixels: Grid, mirrored: bool) -> String {
     };
     let quarter = "The map shows the measured quarter of the cell. The rest is its mirror images (periodic mirror). ";
     if mirrored { quarter.to_owned() + &pixel } else { pixel }
+}
+
+/// A note about statistics from fewer points than the map's.
+fn of_fewer(grid: Grid, points: [usize; 2]) -> String {
+    if [grid.nx(), grid.ny()] == points {
+        return String::new();
+    }
+    format!(" The statistics are of {} x {} points, except the exact rms height and slope.", points[0], points[1])
 }
 
 /// The line about the file of the map.

@@ -203,9 +203,8 @@ fn the_page_of_a_result_has_its_surface_and_sections_through_both_bodies() {
     let gap = rc_heights::npy::read(&place.path("r/gap.npy")).expect("the gap");
     let pressure = rc_heights::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
     let n = gap.grid().nx();
-    let peak = (0..gap.grid().len())
-        .max_by(|a, b| pressure.values()[*a].total_cmp(&pressure.values()[*b]))
-        .expect("elements");
+    let peak =
+        (0..gap.grid().len()).max_by(|a, b| pressure.values()[*a].total_cmp(&pressure.values()[*b])).expect("elements");
     let section = &surface["sections"][0];
     let points = section["points"].as_array().expect("points");
     assert_eq!((points.len(), &section["axis"]), (n, &"x".into()));
@@ -246,7 +245,8 @@ fn a_mirrored_map_shows_its_measured_part_and_a_result_without_its_map_has_a_pag
 #[test]
 fn a_hardness_a_shape_and_a_layer_have_no_constant_of_the_area() {
     let place = Place::new();
-    let sphere = ["solve", "--shape", "sphere", "--radius", "1e-2", "--cell", "1e-3", "--grid", "64", "--e-star", "1e9"];
+    let sphere =
+        ["solve", "--shape", "sphere", "--radius", "1e-2", "--cell", "1e-3", "--grid", "64", "--e-star", "1e9"];
     assert_solved(&place.run(&[&sphere[..], &["--pressure", "1e4", "--quiet", "--out", "sphere"]].concat()));
     assert_solved(&place.run(&small("1e5", &["--hardness", "1e8", "--out", "hard"])));
     assert_solved(&place.run(&small("1e5", &["--layer-thickness", "1e-2", "--out", "layer"])));
