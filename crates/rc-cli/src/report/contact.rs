@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rc_core::{Boundary, EdgeBias};
+use rc_core::{Boundary, EdgeBias, Field};
 use rc_solver::StressDistribution;
 use rc_theory::persson::Persson;
 use serde::Serialize;
@@ -188,6 +188,12 @@ fn commands(folder: &Path, scene: &Scene) -> Vec<Command> {
     commands
 }
 
+/// Index of the maximum pressure.
+pub(super) fn peak(pressure: &Field) -> usize {
+    let values = pressure.values();
+    (0..values.len()).max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0)
+}
+
 fn maps(result: &ResultFolder) -> Maps {
     let ResultFolder { pressure, gap, summary, .. } = result;
     let (grid, of_elements) = (pressure.grid(), result.is_of_elements());
@@ -197,8 +203,8 @@ fn maps(result: &ResultFolder) -> Maps {
     let gaps = pixel_means(grid, |i| if of_elements && p[i] > 0.0 { 0.0 } else { g[i] });
     let contact = pixel_means(grid, |i| f64::from(u8::from(p[i] > 0.0)));
     let pixels = pressures.grid();
-    let peak = (0..pixels.len()).max_by(|a, b| pressures.values()[*a].total_cmp(&pressures.values()[*b])).unwrap_or(0);
-    let peak_at = pixels.centre(peak % pixels.nx(), peak / pixels.nx());
+    let peak = peak(pressure);
+    let peak_at = grid.centre(peak % grid.nx(), peak / grid.nx());
     // In full contact, gaps are only rounding.
     let widest = Some(gaps.max()).filter(|gap| *gap > ROUNDING * summary.penetration_full_contact).unwrap_or(0.0);
     let what = if of_elements { "element" } else { "stored value" };
@@ -269,7 +275,7 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use rc_core::{Field, Grid};
+    use rc_core::Grid;
 
     use super::*;
 

@@ -6,6 +6,7 @@ use rc_core::{Field, Grid};
 use rc_sweep::memory::Budget;
 use serde::Serialize;
 
+use super::contact::peak;
 use super::surface::SurfaceBody;
 use crate::error::CliError;
 use crate::files::result::ResultFolder;
@@ -110,7 +111,7 @@ fn sampled(surface: &mut LoadedSurface) -> Result<Field, CliError> {
 fn sections(heights: &Field, result: &ResultFolder, shift: f64) -> Vec<BodySection> {
     let ResultFolder { pressure, gap, side, .. } = result;
     let grid = pressure.grid();
-    let peak = (0..grid.len()).max_by(|a, b| pressure.values()[*a].total_cmp(&pressure.values()[*b])).unwrap_or(0);
+    let peak = peak(pressure);
     let (px, py) = (peak % grid.nx(), peak / grid.nx());
     let lines = [
         ("x", grid.centre(px, py).y, (0..grid.nx()).map(|ix| grid.index(ix, py)).collect::<Vec<_>>()),
@@ -161,8 +162,11 @@ mod tests {
         let heights = field(|touches| if touches { 1.0 } else { 0.25 });
         let [along_x, along_y] = &sections(&heights, &result, -0.5)[..] else { panic!("two sections") };
         assert_eq!((along_x.points.len(), along_x.contact.iter().filter(|touches| **touches).count()), (1000, 1));
-        assert_eq!(along_x.points[308], [2.0 * 1234.5 / 4000.0, 1.5, 1.5]);
-        assert_eq!(along_x.points[0], [2.0 * 0.5 / 4000.0, 0.0, 0.5], "the elastic surface is above by the gap");
-        assert_eq!((along_y.points.len(), along_y.contact[2], along_y.at), (4, true, 2.0 * 1234.5 / 4000.0));
+        let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+        let peak = 2.0 * 1234.5 / 4000.0;
+        assert!(near(along_x.points[308], [peak, 1.5, 1.5]), "in contact: {:?}", along_x.points[308]);
+        assert!(near(along_x.points[0], [2.5e-4, 0.0, 0.5]), "above by the gap: {:?}", along_x.points[0]);
+        assert_eq!((along_y.points.len(), along_y.contact[2]), (4, true));
+        assert!((along_y.at - peak).abs() < 1e-12, "at {}", along_y.at);
     }
 }
