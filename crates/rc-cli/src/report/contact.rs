@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rc_core::{Boundary, EdgeBias, Field};
+use rc_core::{Boundary, EdgeBias};
 use rc_solver::StressDistribution;
 use rc_theory::persson::Persson;
 use serde::Serialize;
@@ -13,7 +13,7 @@ use super::embedded::{Bits, EmbeddedField, MOST_PIXELS, pixel_means};
 use super::flow_picture::FlowPicture;
 use super::kappa::kappa;
 use super::page::{Command, Page, Text, Tile, made};
-use super::result_surface::ResultSurface;
+use super::result_surface::{ResultSurface, peak};
 use super::spot_sizes::SpotSizes;
 use crate::error::CliError;
 use crate::files::result::ResultFolder;
@@ -188,12 +188,6 @@ fn commands(folder: &Path, scene: &Scene) -> Vec<Command> {
     commands
 }
 
-/// Index of the maximum pressure.
-pub(super) fn peak(pressure: &Field) -> usize {
-    let values = pressure.values();
-    (0..values.len()).max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0)
-}
-
 fn maps(result: &ResultFolder) -> Maps {
     let ResultFolder { pressure, gap, summary, .. } = result;
     let (grid, of_elements) = (pressure.grid(), result.is_of_elements());
@@ -275,7 +269,7 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use rc_core::Grid;
+    use rc_core::{Field, Grid};
 
     use super::*;
 

@@ -6,7 +6,6 @@ use rc_core::{Field, Grid};
 use rc_sweep::memory::Budget;
 use serde::Serialize;
 
-use super::contact::peak;
 use super::surface::SurfaceBody;
 use crate::error::CliError;
 use crate::files::result::ResultFolder;
@@ -105,6 +104,12 @@ fn sampled(surface: &mut LoadedSurface) -> Result<Field, CliError> {
         surface.grid = own;
     }
     surface.heights().map(std::borrow::Cow::into_owned)
+}
+
+/// Index of the maximum pressure.
+pub(super) fn peak(pressure: &Field) -> usize {
+    let values = pressure.values();
+    (0..values.len()).max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0)
 }
 
 /// The sections along x and y through the maximum pressure, with `heights` in λ.
