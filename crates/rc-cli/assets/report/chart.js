@@ -47,7 +47,7 @@ class Axis {
 let charts = 0;
 
 /**
- * A chart of `series` ({ name, points, colour, kind: "line" | "steps" | "dots", dashed, faint }) on axes `x` and `y`
+ * A chart of `series` ({ name, points, colour, kind: "line" | "steps" | "dots" | "fill", dashed, faint }) on axes `x` and `y`
  * ({ label, unit, log, from, to }). `switches` names the axes that get a button for their logarithm.
  */
 class Chart {
@@ -66,7 +66,7 @@ class Chart {
         this.redraw();
       },
     }, `log ${axis}`);
-    const controls = make("div", { class: "controls" }, ...switches.map(button), this.reading);
+    const controls = make("div", { class: "controls" }, ...switches.map(button), chartDownloads(this), this.reading);
     this.legend = make("div", { class: "legend" });
     this.element = make("div", { class: "chart" }, this.legend, this.svg, controls);
     this.redraw();
@@ -119,6 +119,13 @@ class Chart {
     const shown = points.map((point) => (known(point) && known(place(point)) ? place(point) : null));
     if (kind === "dots") {
       return shape("g", { fill: colour }, ...shown.filter(Boolean).map(([cx, cy]) => shape("circle", { cx, cy, r: 3 })));
+    }
+    if (kind === "fill") {
+      const outline = shown.filter(Boolean);
+      if (outline.length === 0) return shape("g");
+      const down = [[outline[outline.length - 1][0], this.up.start], [outline[0][0], this.up.start]];
+      const corner = (point) => point.map((value) => value.toFixed(1)).join(" ");
+      return shape("path", { d: `M${[...outline, ...down].map(corner).join("L")}Z`, fill: colour, class: "filled" });
     }
     let pen = "M";
     const path = shown.map((point) => {

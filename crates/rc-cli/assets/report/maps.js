@@ -59,7 +59,7 @@ class SharedView {
 class FieldMap {
   constructor({ title, field, colours, span, view, sides, reading, ends, movable = true }) {
     const [low, most] = span ?? [movable ? field.low : 0, field.max];
-    Object.assign(this, { field, view, side: sides[0], shape: Math.min(4, Math.max(0.25, sides[1] / sides[0])), reading, colours: colourTable(colours), low, top: most });
+    Object.assign(this, { title, field, view, side: sides[0], shape: Math.min(4, Math.max(0.25, sides[1] / sides[0])), reading, colours: colourTable(colours), low, top: most });
     this.bitmap = make("canvas", { width: field.nx, height: field.ny });
     this.canvas = make("canvas");
     this.value = make("span", { class: "quiet" });
@@ -69,6 +69,7 @@ class FieldMap {
     bar.style.background = `linear-gradient(to right, ${colours.map((c) => `rgb(${c.join(" ")})`).join(", ")})`;
     const greatest = () => (this.top < field.max ? "≥ " : "") + ends(this.low, this.top)[1];
     const [least] = ends(this.low, this.top);
+    this.labels = () => [least, greatest()];
     const end = make("span", {}, greatest());
     const slider = make("input", { type: "range", min: 5, max: 100, value: 100, "aria-label": `end of the colours of ${title}` });
     slider.addEventListener("input", () => {
@@ -79,7 +80,7 @@ class FieldMap {
     });
     const label = movable ? [make("label", {}, "colours", slider)] : [];
     const scale = make("div", { class: "ends" }, make("span", {}, least), ...label, end);
-    this.element = make("figure", {}, make("figcaption", {}, title, this.value), this.box, bar, scale);
+    this.element = make("figure", {}, make("figcaption", {}, title, this.value), this.box, bar, scale, mapDownload(this));
     this.colour();
     this.listen();
     view.listeners.push(() => this.paint());
@@ -101,7 +102,8 @@ class FieldMap {
     context.putImageData(picture, 0, 0);
   }
 
-  paint() {
+  /** Paints the visible part, with the cursor unless it is a picture to keep. */
+  paint(withCursor = true) {
     const { view, canvas } = this;
     const pixels = Math.max(1, Math.round(this.box.clientWidth * (window.devicePixelRatio || 1)));
     const high = Math.max(1, Math.round(pixels * this.shape));
@@ -114,7 +116,7 @@ class FieldMap {
         context.drawImage(this.bitmap, (i - view.x) * cell, high - (j + 1 - view.y) * cellHigh, cell, cellHigh);
       }
     }
-    this.paintCursor(context);
+    if (withCursor) this.paintCursor(context);
     this.paintRuler(context);
     this.value.textContent = this.reading(this.field.at(...view.cursor));
   }

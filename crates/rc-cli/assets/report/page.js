@@ -45,4 +45,15 @@ function showPage() {
   document.documentElement.dataset.ready = "yes";
 }
 
+/** What is folded is printed too. */
+function unfoldForPrint() {
+  let folded = [];
+  window.addEventListener("beforeprint", () => {
+    folded = [...document.querySelectorAll("details:not([open])")];
+    for (const one of folded) one.open = true;
+  });
+  window.addEventListener("afterprint", () => { for (const one of folded) one.open = false; });
+}
+
 showPage();
+unfoldForPrint();

@@ -1,8 +1,11 @@
 // The page of one solved contact.
 
+const RELIEF_NOTE = "The heights of the rigid surface, enlarged. Contact has the colours of the map of the pressure. Drag, or press the arrow keys, to turn it.";
+
 /** The maps, and the sections through their cursor. */
-function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElements, peak, averaged }) {
+function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElements, peak, averaged }, surface) {
   const fields = { pressure: new EmbeddedField(pressure), gap: new EmbeddedField(gap), contact: new EmbeddedField(contact) };
+  if (surface) fields.heights = new EmbeddedField(surface.heights);
   const view = new SharedView(peak, Math.min(1, 8 / Math.max(pressure.nx, pressure.ny)));
   const map = (title, name, colours, unit) => new FieldMap({
     title, field: fields[name], colours, view, sides, ends: (low, high) => [low > 0 ? si(low, unit, 4) : "0", si(high, unit, 4)], reading: (value) => si(value, unit),
@@ -40,6 +43,8 @@ function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElement
     make("p", { class: "quiet" }, help + averaged),
     make("h2", {}, "Section through the cursor"),
     make("div", { class: "columns wide" }, sections.pressure.element, sections.gap.element),
+    ...(surface && surface.sections.length > 0 ? [bodySections(surface, fields, view, sides)] : []),
+    ...(surface ? [reliefView({ heights: fields.heights, sides, pressure: fields.pressure, colours: pressure.colours }, RELIEF_NOTE), ...surfaceParts(surface, fields.heights)] : []),
   ];
 }
 
@@ -115,7 +120,9 @@ function leakagePicture({ png, note }) {
 function resultPage(data) {
   const half = (...children) => make("div", { class: "columns wide" }, ...children);
   return [
-    ...mapsAndSections(data.maps),
+    ...(data.kappa ? [make("p", {}, data.kappa)] : []),
+    ...mapsAndSections(data.maps, data.surface),
+    ...(data.no_surface ? [make("p", { class: "quiet" }, `The surface is not shown: ${data.no_surface}`)] : []),
     half(...[data.stress && stressDistribution(data.stress), data.spots && contactSpots(data.spots)].filter(Boolean)),
     ...[data.leakage && half(leakagePicture(data.leakage))].filter(Boolean),
     half(certificate(data.certificate), make("section", {}, make("h2", {}, "Result"), table(data.lines))),

@@ -1,9 +1,8 @@
 // The page of a surface without a contact.
 
 /** The height map. */
-function heightMap({ sides, heights, span, lowest, note }) {
-  const field = new EmbeddedField(heights);
-  const view = new SharedView([0.5, 0.5], Math.min(1, 8 / Math.max(heights.nx, heights.ny)));
+function heightMap({ sides, heights, span, lowest, note, mirrored }, field = new EmbeddedField(heights)) {
+  const view = new SharedView(mirrored ? [0.25, 0.25] : [0.5, 0.5], Math.min(1, 8 / Math.max(heights.nx, heights.ny)));
   const height = (value) => si(value + lowest, "m");
   const map = new FieldMap({
     title: "Height", field, colours: heights.colours, span, view, sides, reading: height, ends: (low, high) => [height(low), height(high)],
@@ -16,8 +15,11 @@ function heightMap({ sides, heights, span, lowest, note }) {
     const wrapped = view.cursor.map((part, axis) => si((part - Math.floor(part)) * sides[axis], "m"));
     place.textContent = `x = ${wrapped[0]}, y = ${wrapped[1]}`;
   });
+  const measured = () => { Object.assign(view, { x: 0, y: 0, size: 0.5 }); view.change(); };
+  if (mirrored) controls.prepend(make("button", { onclick: measured }, "measured quarter"));
+  if (mirrored) measured();
   view.change();
-  return make("section", {}, make("h2", {}, "Heights"), map.element, controls, make("p", { class: "quiet" }, note));
+  return make("section", {}, make("h2", {}, "Heights of the surface"), map.element, controls, make("p", { class: "quiet" }, note));
 }
 
 /** The spectrum with its power law. */
@@ -25,7 +27,7 @@ function spectrumChart({ spectrum, law }) {
   const series = [{ name: "radial mean", points: spectrum, colour: "var(--blue)" }];
   if (law) series.push({ name: law[1], points: law[0], colour: "var(--red)", dashed: true });
   const chart = new Chart({ x: { label: "wavenumber q (rad/m)", log: true }, y: { label: "C(q) (m⁴)", log: true }, series });
-  return make("section", {}, make("h2", {}, "Power spectral density"), chart.element);
+  return make("section", {}, make("h2", {}, "Power spectral density (spectrum)"), chart.element);
 }
 
 /** The distribution of heights. */
@@ -39,11 +41,30 @@ function heightDistribution({ distribution }) {
   return make("section", {}, make("h2", {}, "Distribution of heights"), chart.element);
 }
 
-function surfacePage(data) {
+/** The material ratio curve with the line of its core. */
+function materialRatio({ material_ratio: curve, core }) {
+  const chart = new Chart({
+    x: { label: "material ratio", from: 0, to: 1 }, y: { label: "height about the mean", unit: "m", from: curve[curve.length - 1][1], to: curve[0][1] },
+    series: [
+      { name: "material ratio curve", points: curve, colour: "var(--blue)" },
+      { name: "line of the core (Sk)", points: core, colour: "var(--red)", dashed: true },
+    ],
+  });
+  return make("section", {}, make("h2", {}, "Material ratio"), chart.element);
+}
+
+/** Map, statistics and charts of a surface. */
+function surfaceParts(data, field) {
   const half = (...children) => make("div", { class: "columns wide" }, ...children);
   const numbers = make("section", {}, make("h2", {}, "Statistics"), table(data.lines), make("h2", {}, "ISO 25178-2, no filter"), table(data.parameters));
   return [
-    half(heightMap(data), numbers),
-    half(...[data.spectrum.length > 1 && spectrumChart(data), heightDistribution(data)].filter(Boolean)),
+    half(heightMap(data, field), numbers),
+    half(...[data.spectrum.length > 1 && spectrumChart(data), heightDistribution(data), data.material_ratio.length > 1 && materialRatio(data)].filter(Boolean)),
   ];
+}
+
+function surfacePage(data) {
+  const field = new EmbeddedField(data.heights);
+  const note = "Drag, or press the arrow keys, to turn it. Heights are enlarged.";
+  return [...surfaceParts(data, field), reliefView({ heights: field, sides: data.sides, colours: data.heights.colours }, note)];
 }

@@ -211,7 +211,8 @@ pub(crate) fn of_surface(path: &Path, over: Scene) -> Result<Inspected, CliError
     let heights = surface.heights()?.into_owned();
     let record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments(&heights));
     let warnings = [surface.warnings, record.shape().warnings()].concat();
-    Ok(Inspected { heights, record: SurfaceRecord { notes: surface.notes, warnings, ..record } })
+    let source = surface.origin;
+    Ok(Inspected { heights, record: SurfaceRecord { source, notes: surface.notes, warnings, ..record } })
 }
 
 /// Writes the pictures of the surface of a scene, and returns their names. Its warnings are told unless

@@ -22,8 +22,8 @@ pub(crate) struct ReportArgs {
 const REPORT_HELP: &str = "\
 The page is one file, usually below 3 MB, which loads nothing: it can be sent by mail and opened anywhere.
 
-For a result it has maps of contact, pressure and gap, sections through the cursor, the stress distribution with a fit of Eq. 7, \
-contact spots, certificate, parameters, and the command that repeats it. For a sweep it has area-load and load-penetration curves \
+For a result it has maps of contact, pressure and gap, sections through both bodies, a view that turns, the surface with its \
+spectrum and areal parameters, the stress distribution with a fit of Eq. 7, contact spots, certificate, parameters, and the command that repeats it. For a sweep it has area-load and load-penetration curves \
 and the rows. For a mean (rc sweep --error-of-mean) it has the means with error bars, and variance and cost of each level. \
 For a study it has the range of each result, and the contacts with the least and the greatest area. \
 Fields of more than 512 x 512 elements are averaged to at most 512 x 512 pixels.";

@@ -11,7 +11,9 @@ use super::certificate::Certificate;
 use super::command::{flags, quoted};
 use super::embedded::{Bits, EmbeddedField, MOST_PIXELS, pixel_means};
 use super::flow_picture::FlowPicture;
+use super::kappa::kappa;
 use super::page::{Command, Page, Text, Tile, made};
+use super::result_surface::{ResultSurface, peak};
 use super::spot_sizes::SpotSizes;
 use crate::error::CliError;
 use crate::files::result::ResultFolder;
@@ -33,6 +35,11 @@ const ROUNDING: f64 = 1e-9;
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Contact {
     maps: Maps,
+    /// The surface and sections through both bodies, or why there are none.
+    surface: Option<ResultSurface>,
+    no_surface: Option<String>,
+    /// κ beside theory.
+    kappa: Option<String>,
     stress: Option<Stress>,
     certificate: Certificate,
     /// Names and values, as `rc solve` prints them.
@@ -87,6 +94,10 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
         "penetration" => format!("at a penetration of {}", engineering(summary.penetration, "m")),
         _ => format!("under {}", engineering(summary.mean_pressure, "Pa")),
     };
+    let (surface, no_surface) = match ResultSurface::of(&scene_path, &result) {
+        Ok(surface) => (Some(surface), None),
+        Err(cause) => (None, Some(cause.to_string())),
+    };
     Ok(Page {
         title: format!("Contact {load}"),
         subtitle: subtitle(&scene, &result),
@@ -103,6 +114,11 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
         kind: "result",
         body: Contact {
             maps: maps(&result),
+            kappa: surface.as_ref().filter(|_| !scene.surface.has_shape()).and_then(|surface| {
+                kappa(summary, result.e_star, surface.nayak().filter(|_| scene.contact.layer_thickness.is_none()))
+            }),
+            surface,
+            no_surface,
             stress: stress(&result),
             certificate: Certificate::of(summary),
             lines: text::solved_lines(summary, result.sides(), result.e_star),
@@ -181,8 +197,8 @@ fn maps(result: &ResultFolder) -> Maps {
     let gaps = pixel_means(grid, |i| if of_elements && p[i] > 0.0 { 0.0 } else { g[i] });
     let contact = pixel_means(grid, |i| f64::from(u8::from(p[i] > 0.0)));
     let pixels = pressures.grid();
-    let peak = (0..pixels.len()).max_by(|a, b| pressures.values()[*a].total_cmp(&pressures.values()[*b])).unwrap_or(0);
-    let peak_at = pixels.centre(peak % pixels.nx(), peak / pixels.nx());
+    let peak = peak(pressure);
+    let peak_at = grid.centre(peak % grid.nx(), peak / grid.nx());
     // In full contact, gaps are only rounding.
     let widest = Some(gaps.max()).filter(|gap| *gap > ROUNDING * summary.penetration_full_contact).unwrap_or(0.0);
     let what = if of_elements { "element" } else { "stored value" };

@@ -10,8 +10,11 @@ const STYLE: &str = include_str!("../../assets/report/page.css");
 /// The script. Its parts are in the order in which they need each other.
 const SCRIPT: &str = concat!(
     include_str!("../../assets/report/dom.js"),
+    include_str!("../../assets/report/download.js"),
     include_str!("../../assets/report/chart.js"),
     include_str!("../../assets/report/maps.js"),
+    include_str!("../../assets/report/bodies.js"),
+    include_str!("../../assets/report/relief.js"),
     include_str!("../../assets/report/result.js"),
     include_str!("../../assets/report/sweep.js"),
     include_str!("../../assets/report/surface.js"),

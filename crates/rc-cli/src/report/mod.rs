@@ -1,7 +1,7 @@
 //! `rc report`: one page of a result, a surface, a sweep or a mean, for a browser.
 //!
 //! The page needs no network. It is a frame ([`document`]), a script, and data. [`contact`] makes the data of a solve,
-//! [`surface`] those of a surface, [`curves`] those of a sweep, [`mean`] those of a mean over realisations, and [`study`]
+//! [`surface`] those of a surface (of a result: [`result_surface`]), [`curves`] those of a sweep, [`mean`] those of a mean over realisations, and [`study`]
 //! those of a study. All texts are made here, and the script shows them as text. The script draws maps and charts from numbers.
 
 pub(crate) mod args;
@@ -13,9 +13,11 @@ mod curves;
 mod document;
 mod embedded;
 mod flow_picture;
+mod kappa;
 mod mean;
 mod page;
 mod percolation;
+mod result_surface;
 mod spot_sizes;
 mod study;
 mod surface;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use rc_core::quantity::{digits, engineering};
+use rc_core::{Field, Grid};
 use rc_plot::{Palette, range_of_most};
 use serde::Serialize;
 
@@ -15,7 +16,7 @@ use crate::inspect::text::{parameter_lines, surface_lines};
 use crate::inspect::{Inspected, of_surface};
 use crate::scene::keys::{RunKeys, Scene};
 use crate::warnings::shown::tell;
-use rc_sweep::to_json;
+use rc_sweep::{MapOrigin, to_json};
 
 /// The data of a page of a surface, without those of all pages.
 #[derive(Clone, Debug, Serialize)]
@@ -29,12 +30,17 @@ pub(super) struct SurfaceBody {
     /// The lowest height (m).
     lowest: f64,
     note: String,
+    /// Whether only a quarter is measured, and the rest is its mirror images.
+    mirrored: bool,
     /// Wavenumber (rad/m) and spectrum C (m⁴).
     spectrum: Vec<(f64, f64)>,
     /// Ends of the power law in the spectrum, if there is one, and its Hurst exponent.
     law: Option<(Vec<(f64, f64)>, String)>,
     /// Height about the mean (m) and density (1/m).
     distribution: Vec<(f64, f64)>,
+    /// Material ratio and height about the mean (m), and the same at the ends of the line of the core.
+    material_ratio: Vec<(f64, f64)>,
+    core: [(f64, f64); 2],
     lines: Vec<(&'static str, String)>,
     parameters: Vec<(&'static str, String)>,
 }
@@ -46,16 +52,6 @@ pub(super) struct SurfaceBody {
 pub(super) fn page(path: &Path, quiet: bool) -> Result<Page<SurfaceBody>, CliError> {
     let Inspected { heights, record } = of_surface(path, Scene::default())?;
     tell(&record.warnings, &RunKeys { quiet, ..RunKeys::default() });
-    let lowest = heights.min();
-    let pixels = pixel_means(heights.grid(), |i| (heights.values()[i] - lowest) * record.cell);
-    let note = if pixels.grid() == heights.grid() {
-        "Every point is a pixel.".to_owned()
-    } else {
-        format!(
-            "The map has at most {MOST_PIXELS} x {MOST_PIXELS} pixels. Each pixel is a mean of the {} points.",
-            heights.grid()
-        )
-    };
     let tile = |name, value| Tile { name, value };
     let command = format!("rc solve {} --e-star ... --pressure ... --out result", quoted(&path.display().to_string()));
     Ok(Page {
@@ -73,19 +69,65 @@ pub(super) fn page(path: &Path, quiet: bool) -> Result<Page<SurfaceBody>, CliErr
         files: vec![Text { title: "Statistics", text: to_json(&record) }],
         made: made(),
         kind: "surface",
-        body: SurfaceBody {
+        body: SurfaceBody::of(&heights, &record),
+    })
+}
+
+impl SurfaceBody {
+    /// The surface of `heights` (in λ) with its statistics, which may be from fewer points.
+    pub(super) fn of(heights: &Field, record: &SurfaceRecord) -> Self {
+        let lowest = heights.min();
+        let pixels = pixel_means(heights.grid(), |i| (heights.values()[i] - lowest) * record.cell);
+        let mirrored = record.source.as_ref().is_some_and(is_mirrored);
+        Self {
             sides: [record.cell, record.cell_y],
             heights: EmbeddedField::of_gap(&pixels, pixels.max(), Bits::Sixteen, Palette::Viridis),
             span: range_of_most(&pixels),
             lowest: lowest * record.cell,
-            note,
-            spectrum: spectrum(&record),
-            law: law(&record),
+            note: note(heights.grid(), pixels.grid(), mirrored) + &of_fewer(heights.grid(), record.grid),
+            mirrored,
+            spectrum: spectrum(record),
+            law: law(record),
             distribution: record.distribution.bins().collect(),
-            lines: surface_lines(&record),
-            parameters: parameter_lines(&record),
-        },
-    })
+            material_ratio: record.areal.curve.clone(),
+            core: record.areal.equivalent_line(),
+            lines: record.source.iter().map(source).chain(surface_lines(record)).collect(),
+            parameters: parameter_lines(record),
+        }
+    }
+}
+
+/// Whether the map was made periodic by its mirror images, with nothing that moves them since.
+fn is_mirrored(source: &MapOrigin) -> bool {
+    source.treatments.iter().any(|treatment| treatment == "periodic mirror")
+        && !source.treatments.iter().any(|treatment| treatment.starts_with("twin") || treatment.starts_with("repeat"))
+}
+
+/// What the map shows.
+fn note(grid: Grid, pixels: Grid, mirrored: bool) -> String {
+    let pixel = if pixels == grid {
+        "Every point is a pixel.".to_owned()
+    } else {
+        format!("The map has at most {MOST_PIXELS} x {MOST_PIXELS} pixels. Each pixel is a mean of the {grid} points.")
+    };
+    let quarter = "The map shows the measured quarter of the cell. The rest is its mirror images (periodic mirror). ";
+    if mirrored { quarter.to_owned() + &pixel } else { pixel }
+}
+
+/// A note about statistics from fewer points than the map's.
+fn of_fewer(grid: Grid, points: [usize; 2]) -> String {
+    if [grid.nx(), grid.ny()] == points {
+        return String::new();
+    }
+    format!(" The statistics are of {} x {} points, except the exact rms height and slope.", points[0], points[1])
+}
+
+/// The line about the file of the map.
+fn source(source: &MapOrigin) -> (&'static str, String) {
+    let channel = source.channel.iter().map(|channel| format!(", channel {channel}"));
+    let treatments = source.treatments.join(", ");
+    let treated = Some(treatments).filter(|list| !list.is_empty()).map(|list| format!("; treatments: {list}"));
+    ("source", source.file.clone() + &channel.chain(treated).collect::<String>())
 }
 
 /// The spectrum where it is more than rounding.
@@ -97,5 +139,7 @@ fn spectrum(record: &SurfaceRecord) -> Vec<(f64, f64)> {
 fn law(record: &SurfaceRecord) -> Option<(Vec<(f64, f64)>, String)> {
     let fit = record.hurst_fit?;
     let ends = [fit.from_waves, fit.to_waves].map(|waves| std::f64::consts::TAU * waves / record.cell);
-    Some((ends.map(|q| (q, fit.psd(q))).to_vec(), format!("H = {}", digits(fit.hurst, 3))))
+    let [from, to] = [fit.from_waves, fit.to_waves].map(|waves| engineering(record.cell / waves, "m"));
+    let label = format!("Hurst exponent H = {}, for wavelengths from {from} to {to}", digits(fit.hurst, 3));
+    Some((ends.map(|q| (q, fit.psd(q))).to_vec(), label))
 }

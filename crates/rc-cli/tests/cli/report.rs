@@ -133,6 +133,7 @@ fn means_over_blocks_are_not_taken_for_elements() {
     assert_eq!(page["maps"]["of_elements"], false);
     let says = page["maps"]["averaged"].as_str().expect("text");
     assert!(says.contains("32 x 32 means over blocks (output_grid) instead of values on 128 x 128 elements"), "{says}");
+    assert_eq!(page["surface"]["sections"].as_array().map(Vec::len), Some(0), "sections need the elements");
     assert!(page["stress"].is_null() && page["spots"].is_null(), "what needs the elements is left out");
     assert_solved(&place.run(&["export", "r", "--quiet"]));
     let head = text(&place.bytes("r/fields.vti"));
@@ -178,8 +179,83 @@ fn a_browser_draws_the_page() {
     let output = Command::new(browser).args(flags).arg(address).output().expect("the browser runs");
     let page = text(&output.stdout);
     assert!(page.contains("data-ready=\"yes\""), "the script failed: {}", text(&output.stderr));
-    assert_eq!(page.matches("<canvas").count(), 3, "maps");
-    assert_eq!(page.matches("<svg").count(), 4, "two sections, the distribution and the spots");
+    assert_eq!(page.matches("<div class=\"map\"").count(), 4, "maps");
+    let charts = "two sections, two of both bodies, spectrum, heights, material ratio, stress and spots";
+    assert_eq!(page.matches("<svg").count(), 9, "{charts}");
+    for text in ["3-D view", "download", "κ = ", "spectrum", "Hurst exponent", "through the maximum pressure"] {
+        assert!(page.contains(text), "{text} is not on the page");
+    }
+}
+
+#[test]
+fn the_page_of_a_result_has_its_surface_and_sections_through_both_bodies() {
+    let place = Place::new();
+    assert_solved(&place.run(&small("1e5", &["--seed", "3", "--out", "r"])));
+    assert_solved(&place.run(&["report", "r"]));
+    let page = self_contained(&place, "r/report.html");
+    let summary = place.json("r/summary.json");
+    let surface = &page["surface"];
+    let kappa = page["kappa"].as_str().expect("a light load");
+    let shown = kappa.split("p = ").nth(1).and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
+    assert!(shown.is_some_and(|shown| (1.5..2.6).contains(&shown)), "{kappa}");
+    let max = summary["max_pressure"].as_f64().expect("a number");
+    assert!((page["maps"]["pressure"]["max"].as_f64().expect("a number") / max - 1.0).abs() < 1e-9);
+    let gap = rc_heights::npy::read(&place.path("r/gap.npy")).expect("the gap");
+    let pressure = rc_heights::npy::read(&place.path("r/pressure.npy")).expect("the pressure");
+    let n = gap.grid().nx();
+    let peak =
+        (0..gap.grid().len()).max_by(|a, b| pressure.values()[*a].total_cmp(&pressure.values()[*b])).expect("elements");
+    let section = &surface["sections"][0];
+    let points = section["points"].as_array().expect("points");
+    assert_eq!((points.len(), &section["axis"]), (n, &"x".into()));
+    for (ix, point) in points.iter().enumerate() {
+        let [rigid, elastic] = [1, 2].map(|i| point[i].as_f64().expect("a number"));
+        let i = peak / n * n + ix;
+        let expected = if pressure.values()[i] > 0.0 { 0.0 } else { gap.values()[i] };
+        assert!((elastic - rigid - expected).abs() < 1e-6 * gap.max(), "{ix}: {rigid}, {elastic}, gap {expected}");
+        assert_eq!(section["contact"][ix], pressure.values()[i] > 0.0);
+    }
+    assert!(surface["law"][1].as_str().is_some_and(|law| law.starts_with("Hurst exponent H = ")), "{surface}");
+    assert!(surface["material_ratio"].as_array().is_some_and(|curve| curve.len() > 50));
+    assert!(surface["parameters"].to_string().contains("Sk, Spk, Svk"));
+    assert!(surface["spectrum"].as_array().is_some_and(|spectrum| spectrum.len() > 3));
+}
+
+#[test]
+fn a_mirrored_map_shows_its_measured_part_and_a_result_without_its_map_has_a_page() {
+    let place = Place::new();
+    assert_solved(&place.run(&["surface", "--waves", "8", "--grid", "32", "--quiet", "--out", "named.npy"]));
+    assert_solved(&place.run(&["prepare", "named.npy", "--cell", "1e-3", "--out", "p"]));
+    let solve = ["solve", "p", "--e-star", "1e9", "--pressure", "1e5", "--quiet", "--out", "r"];
+    assert_solved(&place.run(&solve));
+    assert_solved(&place.run(&["report", "r"]));
+    let page = self_contained(&place, "r/report.html");
+    let surface = &page["surface"];
+    assert_eq!(surface["mirrored"], true);
+    assert!(surface["note"].as_str().is_some_and(|note| note.contains("measured quarter")), "{}", surface["note"]);
+    let source = surface["lines"][0].to_string();
+    assert!(source.contains("named.npy; treatments: ") && source.contains("periodic mirror"), "{source}");
+    std::fs::remove_file(place.path("r/heights.npy")).expect("the map");
+    assert_solved(&place.run(&["report", "r"]));
+    let page = self_contained(&place, "r/report.html");
+    assert!(page["surface"].is_null() && page["kappa"].is_null());
+    assert!(page["no_surface"].as_str().is_some_and(|cause| cause.contains("heights.npy")), "{}", page["no_surface"]);
+}
+
+#[test]
+fn a_hardness_a_shape_and_a_layer_have_no_constant_of_the_area() {
+    let place = Place::new();
+    let sphere =
+        ["solve", "--shape", "sphere", "--radius", "1e-2", "--cell", "1e-3", "--grid", "64", "--e-star", "1e9"];
+    assert_solved(&place.run(&[&sphere[..], &["--pressure", "1e4", "--quiet", "--out", "sphere"]].concat()));
+    assert_solved(&place.run(&small("1e5", &["--hardness", "1e8", "--out", "hard"])));
+    assert_solved(&place.run(&small("1e5", &["--layer-thickness", "1e-2", "--out", "layer"])));
+    for folder in ["sphere", "hard", "layer"] {
+        assert_solved(&place.run(&["report", folder]));
+        let page = self_contained(&place, &format!("{folder}/report.html"));
+        assert!(page["kappa"].is_null(), "{folder}: {}", page["kappa"]);
+        assert_eq!(page["surface"]["sections"].as_array().map(Vec::len), Some(2), "{folder}");
+    }
 }
 
 #[test]

@@ -68,6 +68,12 @@ impl SurfaceKeys {
         self.shape.is_some() && self.file().is_none() && !self.generates()
     }
 
+    /// Whether the surface has a shape, alone or under roughness.
+    #[must_use]
+    pub fn has_shape(&self) -> bool {
+        self.shape.is_some()
+    }
+
     /// What is added to a surface, in a cell: a shape and another body.
     #[must_use]
     pub fn added(self) -> Self {
