@@ -52,7 +52,7 @@ const LAY: f64 = 0.5;
 const SHORT: f64 = 0.05;
 
 /// Ratio of rms slopes above which even few waves are a lay. It is 1 for an isotropic surface, whatever its long waves.
-const STEEP: f64 = 1.5;
+const STEEP: f64 = 2.0;
 
 impl Texture {
     /// Whether the surface has a lay: Str below 0.5, and not by the chance of a few long waves.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::CommandFactory as _;
 
-use crate::support::{Place, bumps, f8, npy, text};
+use crate::support::{Place, npy, text};
 
 /// Beginning of a block whose lines that begin with `rc` are run. `sh,ignore` marks blocks that take too long.
 const RUN: &str = "```sh";
@@ -48,8 +48,10 @@ fn commands(document: &str) -> Vec<(usize, String)> {
 ///
 /// They are measured maps, a sphere, waves, a spectrum, a profile, scenes, and the file of an instrument.
 fn prepare(place: &Place) {
+    // It has no lay, and its summits are wide enough for the lightest loads.
+    let map = ["surface", "--waves", "4", "--grid", "64", "--cell", "1e-3", "--rms", "7e-6", "--out"];
     for name in ["map.npy", "first.npy", "second.npy"] {
-        place.write(name, npy("<f8", false, "(64, 64)", &f8(&bumps(64))));
+        assert_eq!(place.run(&[&map[..], &[name, "--quiet"]].concat()).status.code(), Some(0));
     }
     let wide = |i: usize| (0.3 * (i % 128) as f64).sin() * 1e-6 + (0.2 * (i / 128) as f64).cos() * 1e-6;
     let wide = (0..128 * 64).flat_map(|i| wide(i).to_le_bytes()).collect::<Vec<u8>>();
@@ -71,8 +73,7 @@ fn prepare(place: &Place) {
 }
 
 /// Warnings of documented commands: a part of the command, and the beginning of what it tells.
-const EXPECTED: [(&str, &str); 2] =
-    [("rc prepare map.npy", "the map has a lay"), ("rc study map.npy", "the map has a lay")];
+const EXPECTED: [(&str, &str); 0] = [];
 
 /// Fails unless a command tells the warnings that are expected of it, and no others.
 fn assert_expected(command: &str, told: &str) {

@@ -71,14 +71,8 @@ fn what_a_line_contact_has_not_is_refused() {
     place.write("hole.csv", "x (um),z (nm)\n0,1\n1,nan\n2,1\n3,3\n");
     let map: Vec<f64> = (0..64).map(|i| f64::from(i * i % 7)).collect();
     place.write("map.npy", npy("<f8", false, "(8, 8)", &map.iter().flat_map(|h| h.to_le_bytes()).collect::<Vec<_>>()));
-    let cases: [(&str, &[&str], &str); 12] = [
+    let cases: [(&str, &[&str], &str); 10] = [
         ("wave.csv", &["--leakage"], "the line contact of a profile cannot be combined with the flow"),
-        (
-            "wave.csv",
-            &["--layer-thickness", "1mm", "--layer-poisson", "0.3"],
-            "cannot be combined with an elastic layer",
-        ),
-        ("wave.csv", &["--hardness", "1e9"], "cannot be combined with a hardness"),
         ("wave.csv", &["--boundary", "free"], "cannot be combined with free borders"),
         ("wave.csv", &["--method", "adaptive"], "a profile has none"),
         ("wave.csv", &["--cell-y", "1mm"], "no side along y"),
@@ -164,4 +158,35 @@ fn holes_and_units_of_a_profile_are_told() {
     let bare: Vec<f64> = (0..40).map(|i| f64::from(i * i % 11)).collect();
     place.write("bare.npy", npy("<f8", false, "(40, 1)", &f8(&bare.iter().map(|h| *h as f32).collect::<Vec<_>>())));
     assert_solved(&place.run(&["inspect", "bare.npy", "--cell", "40um", "--height-scale", "1nm"]));
+}
+
+/// A surface of equal rows is the profile of one row, also with a hardness and on a layer.
+#[test]
+fn equal_rows_are_the_line_contact_of_one() {
+    let place = Place::new();
+    let row: Vec<f64> = (0..128).map(|i| 1e-7 * f64::from(i * i % 23)).collect();
+    let file = |rows: usize| {
+        let bytes: Vec<u8> = row.repeat(rows).iter().flat_map(|height| height.to_le_bytes()).collect();
+        npy("<f8", false, &format!("({rows}, 128)"), &bytes)
+    };
+    place.write("row.npy", file(1));
+    place.write("rows.npy", file(4));
+    for more in [&[][..], &["--hardness", "1.2e8"], &["--layer-thickness", "3mm", "--layer-poisson", "0.4"]] {
+        let solve = |file: &str, shape: &[&str], out: &str| {
+            let args =
+                ["solve", file, "--cell", "1mm", "--e-star", "1e9", "--pressure", "4e7", "--quiet", "--out", out];
+            assert_solved(&place.run(&[&args[..], shape, more, &["--energy-tolerance", "1e-5"]].concat()));
+            let summary = place.json(&format!("{out}/summary.json"));
+            ["area_fraction", "mean_gap", "rms_pressure", "penetration"]
+                .map(|key| summary[key].as_f64().expect("a number"))
+        };
+        let line = solve("row.npy", &["--line"], "line");
+        let map = solve("rows.npy", &["--cell-y", "31.25um", "--method", "uniform"], "map");
+        for (line, map) in line.into_iter().zip(map) {
+            assert!((line / map - 1.0).abs() < 1e-4, "{more:?}: {line:e} and {map:e}");
+        }
+        for out in ["line", "map"] {
+            std::fs::remove_dir_all(place.path(out)).expect("the folder of the result");
+        }
+    }
 }

@@ -126,7 +126,7 @@ const ROWS: [Row; 23] = [
 ];
 
 /// Features that exclude each other with every method. The message names the key of the first.
-const PAIRS: [(Feature, Feature, &str); 24] = [
+const PAIRS: [(Feature, Feature, &str); 22] = [
     (Spectral, FreeBorders, "its waves are periodic"),
     (FreeBorders, KernelFunction, "the function describes a periodic cell"),
     (FreeBorders, Layer, "the response of a layer is known in a periodic cell only"),
@@ -142,8 +142,6 @@ const PAIRS: [(Feature, Feature, &str); 24] = [
     (AreaError, Sweep, "rc solve chooses a grid for each solve (give grid instead)"),
     (AreaError, DryRun, "its grid is not known before the solve (give grid instead)"),
     (Line, FreeBorders, "a load on a line displaces a half-plane without limit, so the profile is periodic"),
-    (Line, Layer, "its error bars are those of the half-plane"),
-    (Line, Hardness, "its error bars are those of elastic edges"),
     (Line, Leakage, "each contact of a profile closes the gap along its whole width"),
     (Watch, DryRun, "a dry run has no contact to show"),
     (Watch, Ranks, "no rank has the whole contact while it is solved"),
