@@ -16,6 +16,9 @@ const MOST: usize = 20;
 pub(super) fn over_seeds(rows: &SweepRows) -> String {
     let mut problems: Vec<(String, Vec<f64>)> = Vec::new();
     for cells in rows.values().filter(|cells| cells.contains_key("seed")) {
+        if cells.get("status").is_some_and(|status| status == "not_converged") {
+            continue;
+        }
         let Some(area) = cells.get("area_fraction").and_then(Value::as_f64) else { continue };
         let name = problem(cells);
         match problems.iter_mut().find(|(other, _)| *other == name) {

@@ -38,6 +38,7 @@ use self::args::{SweepArgs, SweepCommand};
 use self::solved::HowRows;
 use self::surfaces::Surfaces;
 use crate::error::CliError;
+use crate::run::stop::Stop;
 use crate::terminal;
 
 /// Runs `rc sweep`.
@@ -75,7 +76,11 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>, (shard, folder): (Shard, &Pa
     let how = HowRows { run: &surfaces.run, threads, max_elements: surfaces.max_elements(), stop: None };
     let solved = solved::rows(surfaces, sweep, how)?;
     let whole = shard == Shard::WHOLE && sweep.kept().rows().len() == n_rows;
-    let sealing = if whole && surfaces.leak() { Some(sealing::find(surfaces, sweep, folder)?) } else { None };
+    let sealing = if whole && surfaces.leak() {
+        Some(sealing::find(surfaces, sweep, folder, &Stop::at(started, surfaces.run.time_limit))?)
+    } else {
+        None
+    };
     let kept = sweep.kept();
     match (surfaces.run.json, surfaces.run.quiet) {
         (true, _) => terminal::print(&to_json(&kept.rows().values().collect::<Vec<_>>()))?,
@@ -91,7 +96,7 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>, (shard, folder): (Shard, &Pa
                 count(n_rows, "row")
             };
             let threads = count(threads, "thread");
-            let sealing = sealing.map_or_else(String::new, |sealing| sealing.line() + "\n");
+            let sealing = sealing.map_or_else(String::new, |sealing| sealing.lines());
             let means = means::over_seeds(kept.rows());
             let head = format!("{means}{rows}{before} in {seconds} s, {threads}\n{sealing}");
             terminal::print(&format!("{head}\nwritten to {table}\n"))?;

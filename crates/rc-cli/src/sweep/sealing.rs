@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use rc_core::quantity::{digits, engineering};
+use rc_core::quantity::engineering;
 use rc_core::{Boundary, Silent};
 use rc_sweep::memory::Budget;
 use rc_sweep::{Sweep, SweepRow, files, to_json};
@@ -11,10 +11,11 @@ use serde::Serialize;
 
 use super::surfaces::Surfaces;
 use crate::error::CliError;
+use crate::run::stop::Stop;
 use crate::scene::keys::ContactKeys;
 use crate::scene::loaded::LoadedSurface;
 use crate::solve::leakage::open_gap;
-use crate::solve::solved::ProblemSetup;
+use crate::solve::solved::{ProblemSetup, SolvedParts};
 
 /// File of the sealing pressures in the folder of a sweep.
 pub(crate) const SEALING_FILE: &str = "sealing.json";
@@ -22,27 +23,44 @@ pub(crate) const SEALING_FILE: &str = "sealing.json";
 /// Ratio of the ends of a bracket, minus 1, at which bisection ends.
 const NARROW: f64 = 0.01;
 
+/// Least relative step of a load.
+const LEAST_STEP: f64 = 1e-6;
+
+/// Minimum number of surfaces of a standard error.
+const FEWEST: usize = 3;
+
 /// Names of the axes of flows.
 const AXES: [&str; 2] = ["x", "y"];
 
-/// The sealing pressures of all surfaces and axes.
+/// The sealing pressures of a sweep.
 #[derive(Debug, Serialize)]
 pub(super) struct Sealing {
-    /// Mean of the sealing pressures (Pa) over surfaces and axes; `None` if no film closes between two loads.
+    /// The sealing pressure (Pa) of the only problem; `None` if there are several, or its film does not close between the
+    /// loads.
     sealing_pressure: Option<f64>,
-    /// Standard error of the mean (Pa), from at least two.
-    standard_error: Option<f64>,
-    /// Lowest pressure (Pa) with a flow, and highest without, in all brackets.
+    /// Highest mean pressure (Pa) with a flow and lowest without, of the only problem.
     bracket: Option<[f64; 2]>,
-    /// Each surface and axis.
+    /// Each scene, and each variation of its keys.
+    problems: Vec<Problem>,
+}
+
+/// The seal of one scene, of which surfaces are realisations.
+#[derive(Debug, Serialize)]
+struct Problem {
+    #[serde(skip_serializing_if = "String::is_empty")]
+    scene: String,
+    /// Mean over surfaces and axes (Pa); `None` unless the film of each closes between the loads.
+    sealing_pressure: Option<f64>,
+    /// Standard error (Pa) of the mean over at least three surfaces, each of which counts with the mean of its axes.
+    standard_error: Option<f64>,
+    /// Lowest pressure (Pa) with a flow, and highest without, in the brackets of all surfaces and axes.
+    bracket: Option<[f64; 2]>,
     surfaces: Vec<SurfaceSeal>,
 }
 
 /// The sealing pressure of one surface along one axis.
 #[derive(Debug, Serialize)]
 struct SurfaceSeal {
-    #[serde(skip_serializing_if = "String::is_empty")]
-    scene: String,
     seed: Option<u64>,
     axis: &'static str,
     /// Middle of the bracket (Pa).
@@ -61,26 +79,38 @@ struct State {
 /// Finds the sealing pressures of the finished rows of `sweep`, and writes them.
 ///
 /// Between the last load with a flow and the first without, contacts under further loads are solved until the bracket
-/// is narrower than 1 %. Their flows are not solved, because only the connection of the film counts.
+/// is narrower than 1 %, or `stop` says so. Their flows are not solved, because only the connection of the film counts.
 ///
 /// # Errors
 /// [`CliError`].
-pub(super) fn find(surfaces: &Surfaces, sweep: &Sweep, folder: &Path) -> Result<Sealing, CliError> {
+pub(super) fn find(surfaces: &Surfaces, sweep: &Sweep, folder: &Path, stop: &Stop) -> Result<Sealing, CliError> {
     let loads = sweep.plan().shape().loads;
-    let mut found = Vec::new();
+    let mut problems: Vec<Problem> = Vec::new();
     for (i, surface) in surfaces.all().iter().enumerate().filter(|(_, surface)| surface.leaks()) {
         let rows = (0..loads).map(|load| sweep.plan().row(i * loads + load));
         let mut rows: Vec<(State, [bool; 2])> = rows.filter_map(|row| solved_before(sweep, &row)).collect();
         rows.sort_by(|a, b| a.0.load.total_cmp(&b.0.load));
-        let mut search = Search { surfaces, index: i, heights: None, rows };
-        for axis in 0..2 {
+        let mut search = Search { surfaces, index: i, heights: None, rows, stop };
+        let name = surface.name();
+        if problems.last().is_none_or(|problem| problem.scene != name) {
+            problems.push(Problem::new(name));
+        }
+        for (axis, name) in AXES.into_iter().enumerate() {
             let bracket = search.bracket(axis)?;
             let sealing_pressure = bracket[0].zip(bracket[1]).map(|(leaks, seals)| 0.5 * (leaks + seals));
-            let scene = surface.name();
-            found.push(SurfaceSeal { scene, seed: surface.seed(), axis: AXES[axis], sealing_pressure, bracket });
+            let seal = SurfaceSeal { seed: surface.seed(), axis: name, sealing_pressure, bracket };
+            if let Some(problem) = problems.last_mut() {
+                problem.surfaces.push(seal);
+            }
         }
     }
-    let sealing = Sealing::of(found);
+    problems.iter_mut().for_each(Problem::average);
+    let only = if let [only] = &problems[..] { Some(only) } else { None };
+    let sealing = Sealing {
+        sealing_pressure: only.and_then(|only| only.sealing_pressure),
+        bracket: only.and_then(|only| only.bracket),
+        problems,
+    };
     files::write_file(&folder.join(SEALING_FILE), |path| files::write_synced(path, to_json(&sealing).as_bytes()))?;
     Ok(sealing)
 }
@@ -89,6 +119,9 @@ pub(super) fn find(surfaces: &Surfaces, sweep: &Sweep, folder: &Path) -> Result<
 fn solved_before(sweep: &Sweep, row: &SweepRow) -> Option<(State, [bool; 2])> {
     let kept = sweep.kept();
     let cells = kept.rows().get(&row.index)?;
+    if cells.get("status")? == "not_converged" {
+        return None;
+    }
     let percolates = cells.get("percolates")?.as_array()?;
     let pressure = cells.get("mean_pressure")?.as_f64()?;
     Some((State { load: row.load, pressure }, [percolates.first()?.as_bool()?, percolates.get(1)?.as_bool()?]))
@@ -101,6 +134,7 @@ struct Search<'a> {
     heights: Option<LoadedSurface>,
     /// States in the order of their loads.
     rows: Vec<(State, [bool; 2])>,
+    stop: &'a Stop,
 }
 
 impl Search<'_> {
@@ -113,16 +147,20 @@ impl Search<'_> {
             let (Some(low), Some(high)) = (leaks.and_then(at), at(seals)) else {
                 return Ok([leaks.and_then(at), at(seals)].map(|state| state.map(|state| state.pressure)));
             };
-            if high.load <= low.load * (1.0 + NARROW) {
-                return Ok([Some(low.pressure), Some(high.pressure)]);
-            }
-            let state = self.solved((low.load * high.load).sqrt())?;
+            let is_narrow =
+                high.pressure <= low.pressure * (1.0 + NARROW) || high.load <= low.load * (1.0 + LEAST_STEP);
+            let between = if is_narrow || self.stop.reason().is_some() {
+                None
+            } else {
+                self.solved((low.load * high.load).sqrt())?
+            };
+            let Some(state) = between else { return Ok([Some(low.pressure), Some(high.pressure)]) };
             self.rows.insert(seals, state);
         }
     }
 
-    /// The film under one more load.
-    fn solved(&mut self, load: f64) -> Result<(State, [bool; 2]), CliError> {
+    /// The film under one more load; `None` if its contact does not converge.
+    fn solved(&mut self, load: f64) -> Result<Option<(State, [bool; 2])>, CliError> {
         let row = SweepRow { index: 0, surface: self.index, load };
         let mut contact = self.surfaces.contact_of(&row)?;
         contact.keys = ContactKeys { leakage: false, ..contact.keys };
@@ -133,7 +171,10 @@ impl Search<'_> {
         let kernel = contact.kernel()?;
         let budget = Budget::new(self.surfaces.run.memory_limit);
         let problem = ProblemSetup { surface: &surface, contact: &contact, kernel: &*kernel, budget };
-        let solution = problem.solve(Instant::now(), &Silent)?.into_parts().solution;
+        let SolvedParts { solution, failure, .. } = problem.solve(Instant::now(), &Silent)?.into_parts();
+        if failure.is_some() {
+            return Ok(None);
+        }
         let gap = open_gap(&solution);
         let percolates = match contact.boundary {
             Boundary::Periodic => rc_leakage::percolates(&gap),
@@ -142,49 +183,66 @@ impl Search<'_> {
         let pressure = contact.units.pascals(solution.info().mean_pressure);
         drop(solution);
         self.heights = Some(surface);
-        Ok((State { load, pressure }, percolates))
+        Ok(Some((State { load, pressure }, percolates)))
+    }
+}
+
+impl Problem {
+    fn new(scene: String) -> Self {
+        Self { scene, sealing_pressure: None, standard_error: None, bracket: None, surfaces: Vec::new() }
+    }
+
+    /// Fills in the means, once all surfaces are there.
+    fn average(&mut self) {
+        let brackets = self.surfaces.iter().map(|seal| seal.bracket[0].zip(seal.bracket[1]));
+        let both = brackets.flatten().reduce(|all, one| (all.0.min(one.0), all.1.max(one.1)));
+        self.bracket = both.map(|(low, high)| [low, high]);
+        // Without those beyond the loads the mean would be too small.
+        let of_surface = |pair: &[SurfaceSeal]| {
+            let axes: Option<Vec<f64>> = pair.iter().map(|seal| seal.sealing_pressure).collect();
+            axes.map(|axes| axes.iter().sum::<f64>() / axes.len() as f64)
+        };
+        let Some(found) = self.surfaces.chunks(AXES.len()).map(of_surface).collect::<Option<Vec<f64>>>() else {
+            return;
+        };
+        let n = found.len() as f64;
+        let mean = found.iter().sum::<f64>() / n;
+        let variance = found.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        self.sealing_pressure = Some(mean);
+        self.standard_error = (found.len() >= FEWEST).then(|| (variance / n).sqrt());
+    }
+
+    /// The sealing pressure as text.
+    fn line(&self) -> String {
+        let pressure = |value: f64| engineering(value, "Pa");
+        let name = if self.scene.is_empty() { String::new() } else { format!(" ({})", self.scene) };
+        let of_axis = |seal: &SurfaceSeal| match (seal.sealing_pressure, seal.bracket) {
+            (Some(found), _) => format!("{} along {}", pressure(found), seal.axis),
+            (None, [Some(leaks), _]) => format!("above {} along {}", pressure(leaks), seal.axis),
+            (None, [None, Some(seals)]) => format!("below {} along {}", pressure(seals), seal.axis),
+            (None, [None, None]) => format!("unknown along {}", seal.axis),
+        };
+        if self.surfaces.len() == AXES.len() {
+            let axes = self.surfaces.iter().map(of_axis).collect::<Vec<_>>().join(", ");
+            return format!("sealing pressure{name}: {axes}\n");
+        }
+        let n = self.surfaces.len() / AXES.len();
+        let error = self.standard_error.map_or_else(String::new, |error| format!(" ± {}", pressure(error)));
+        match (self.sealing_pressure, self.bracket) {
+            (Some(mean), Some([low, high])) => {
+                let range = format!("from {} to {}", pressure(low), pressure(high));
+                format!("sealing pressure{name}: {}{error}, mean of {n} surfaces, {range}\n", pressure(mean))
+            }
+            _ => format!(
+                "sealing pressure{name}: some of {n} surfaces are open or closed at all loads, see {SEALING_FILE}\n"
+            ),
+        }
     }
 }
 
 impl Sealing {
-    fn of(surfaces: Vec<SurfaceSeal>) -> Self {
-        let found: Vec<f64> = surfaces.iter().filter_map(|seal| seal.sealing_pressure).collect();
-        let n = found.len() as f64;
-        let mean = found.iter().sum::<f64>() / n;
-        let variance = found.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        let both = surfaces.iter().filter_map(|seal| seal.bracket[0].zip(seal.bracket[1]));
-        let bracket = both.reduce(|all, one| (all.0.min(one.0), all.1.max(one.1))).map(|(low, high)| [low, high]);
-        Self {
-            sealing_pressure: (n > 0.0).then_some(mean),
-            standard_error: (n > 1.0).then(|| (variance / n).sqrt()),
-            bracket,
-            surfaces,
-        }
-    }
-
-    /// The sealing pressure as a line of text.
-    pub(super) fn line(&self) -> String {
-        let (Some(mean), Some([low, high])) = (self.sealing_pressure, self.bracket) else {
-            return "sealing pressure: not between the loads; see sealing.json".to_owned();
-        };
-        let pressure = |value: f64| engineering(value, "Pa");
-        let n = self.surfaces.iter().filter(|seal| seal.sealing_pressure.is_some()).count();
-        let open = self.surfaces.len() - n;
-        let others = if open > 0 { format!("; {open} others are not between the loads") } else { String::new() };
-        match self.standard_error {
-            Some(error) => format!(
-                "sealing pressure: {} ± {} %, mean of {n} surfaces and axes, from {} to {}{others}",
-                pressure(mean),
-                digits(100.0 * error / mean, 2),
-                pressure(low),
-                pressure(high)
-            ),
-            None => format!(
-                "sealing pressure: {}, between {} and {}{others}",
-                pressure(mean),
-                pressure(low),
-                pressure(high)
-            ),
-        }
+    /// A line for each problem.
+    pub(super) fn lines(&self) -> String {
+        self.problems.iter().map(Problem::line).collect()
     }
 }

@@ -134,7 +134,7 @@ fn a_sweep_finds_the_pressure_at_which_the_film_closes() {
     assert_solved(&output);
     assert!(text(&output.stdout).contains("sealing pressure: "), "{}", text(&output.stdout));
     let sealing = place.json("seal/sealing.json");
-    let along_x = &sealing["surfaces"][0];
+    let along_x = &sealing["problems"][0]["surfaces"][0];
     let [leaks, seals] = [0, 1].map(|i| along_x["bracket"][i].as_f64().expect("a pressure"));
     assert!(leaks < seals && seals < 1.011 * leaks, "{along_x}");
     for (pressure, percolates) in [(leaks, true), (seals, false)] {
