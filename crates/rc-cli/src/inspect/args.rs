@@ -13,7 +13,7 @@ use crate::scene::values::{GridSpec, Marks};
 /// Arguments of `rc inspect`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InspectArgs {
-    /// A height map, a folder of a result or a surface, or a scene; with --spectrum, a file of waves
+    /// A height map, a folder of a result, surface or sweep, or a scene; with --spectrum, a file of waves
     ///
     /// A result is also found by its summary.json or pressure.npy.
     #[arg(value_name = "FILE")]
@@ -59,7 +59,7 @@ pub(crate) struct InspectArgs {
     /// Layout of an ambiguous text: each line a row (matrix) or point (xyz)
     #[arg(long, value_name = "matrix|xyz")]
     pub(crate) layout: Option<Layout>,
-    /// Folder for pictures of a height map: heights, spectrum, distribution
+    /// Folder for pictures of a height map, or for means.csv of a sweep
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print the statistics as JSON, with the whole spectrum
