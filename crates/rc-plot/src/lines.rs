@@ -2,6 +2,7 @@
 
 use plotters::chart::{ChartBuilder, ChartContext, SeriesLabelPosition};
 use plotters::coord::cartesian::Cartesian2d;
+use plotters::coord::combinators::BindKeyPoints as _;
 use plotters::coord::combinators::IntoLogRange as _;
 use plotters::coord::ranged1d::{Ranged, ValueFormatter};
 use plotters::element::{Circle, EmptyElement, PathElement};
@@ -85,14 +86,46 @@ pub fn draw_lines_on<B: DrawingBackend>(
     let mut chart = builder(area, plot, font);
     let (x, y, corner) = (plot.x.0..plot.x.1, plot.y.0..plot.y.1, emptiest_corner(plot, log));
     let fail = PictureError::new;
+    let marks = |(low, high): (f64, f64)| log_marks(low, high);
+    let (x_marks, y_marks) = (marks(plot.x), marks(plot.y));
     match (log.x, log.y) {
         (false, false) => draw_on(chart.build_cartesian_2d(x, y).map_err(fail)?, plot, font, corner),
-        (true, false) => draw_on(chart.build_cartesian_2d(x.log_scale(), y).map_err(fail)?, plot, font, corner),
-        (false, true) => draw_on(chart.build_cartesian_2d(x, y.log_scale()).map_err(fail)?, plot, font, corner),
-        (true, true) => {
-            draw_on(chart.build_cartesian_2d(x.log_scale(), y.log_scale()).map_err(fail)?, plot, font, corner)
-        }
+        (true, false) => draw_on(
+            chart.build_cartesian_2d(x.log_scale().with_key_points(x_marks), y).map_err(fail)?,
+            plot,
+            font,
+            corner,
+        ),
+        (false, true) => draw_on(
+            chart.build_cartesian_2d(x, y.log_scale().with_key_points(y_marks)).map_err(fail)?,
+            plot,
+            font,
+            corner,
+        ),
+        (true, true) => draw_on(
+            chart
+                .build_cartesian_2d(x.log_scale().with_key_points(x_marks), y.log_scale().with_key_points(y_marks))
+                .map_err(fail)?,
+            plot,
+            font,
+            corner,
+        ),
     }
+}
+
+/// Powers of ten in a positive range; with fewer than three of them also twice and five times these.
+fn log_marks(low: f64, high: f64) -> Vec<f64> {
+    let exponents = low.log10().floor() as i32..=high.log10().ceil() as i32;
+    let marks = |factors: &'static [f64]| -> Vec<f64> {
+        let all = exponents.clone().flat_map(|e| factors.iter().map(move |factor| factor * 10_f64.powi(e)));
+        all.filter(|mark| (low..=high).contains(mark)).collect()
+    };
+    let decades = marks(&[1.0]);
+    if decades.len() < 3 {
+        return marks(&[1.0, 2.0, 5.0]);
+    }
+    let every = decades.len().div_ceil(8);
+    decades.into_iter().step_by(every).collect()
 }
 
 fn builder<'a, 'b, B: DrawingBackend>(area: &'a Area<B>, plot: &LinePlot<'_>, font: f64) -> ChartBuilder<'a, 'b, B> {

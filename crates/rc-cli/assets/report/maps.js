@@ -101,6 +101,14 @@ class FieldMap {
     context.putImageData(picture, 0, 0);
   }
 
+  /** Another field of the same cell, in the same colours. */
+  show(field) {
+    this.field = field;
+    Object.assign(this.bitmap, { width: field.nx, height: field.ny });
+    this.colour();
+    this.paint();
+  }
+
   paint() {
     const { view, canvas } = this;
     const pixels = Math.max(1, Math.round(this.box.clientWidth * (window.devicePixelRatio || 1)));

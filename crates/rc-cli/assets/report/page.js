@@ -45,4 +45,9 @@ function showPage() {
   document.documentElement.dataset.ready = "yes";
 }
 
+// Paper cannot be unfolded.
+window.addEventListener("beforeprint", () => {
+  for (const details of document.querySelectorAll("details")) details.open = true;
+});
+
 showPage();

@@ -77,7 +77,10 @@ impl CurvePicture {
         let is_log = table.is_geometric();
         let lines = if quantity.name == "area" { persson(table) } else { Vec::new() };
         let theory: Vec<_> = lines.into_iter().map(|line| (line.scene, line.points)).collect();
-        let values = |i: usize| scenes.iter().flat_map(move |(_, points)| points.iter().map(move |at| at[i].value));
+        let points = || scenes.iter().flat_map(|(_, points)| points);
+        let ends = |i: usize| {
+            points().flat_map(move |at| [at[i].value - at[i].error(), at[i].value, at[i].value + at[i].error()])
+        };
         // The gap falls with the logarithm of the load.
         let log_y = is_log && quantity.name != "gap";
         let seeds = table.surfaces().len() / table.scenes().len().max(1);
@@ -86,8 +89,8 @@ impl CurvePicture {
         Some(Self {
             name: if quantity.name == "of_bodies" { "conductance-of-bodies" } else { quantity.name },
             title: format!("{}{}{of_seeds}", title[..1].to_uppercase(), &title[1..]),
-            x: Axis::of(PRESSURE.words, PRESSURE.unit, is_log, values(0)),
-            y: Axis::of(quantity.words, quantity.unit, log_y, values(1)),
+            x: Axis::of(PRESSURE.words, PRESSURE.unit, is_log, ends(0)),
+            y: Axis::of(quantity.words, quantity.unit, log_y, ends(1)),
             scenes,
             theory,
         })

@@ -100,7 +100,7 @@ fn head(quantity: &Quantity) -> &'static str {
 }
 
 /// A mean with its standard error, such as `15.1 µm ± 0.2 µm`.
-fn cell(quantity: &Quantity, mean: Mean) -> String {
+pub(crate) fn cell(quantity: &Quantity, mean: Mean) -> String {
     let of = |value| words(value, quantity.unit);
     mean.standard_error
         .map_or_else(|| of(mean.value), |error| format!("{} ± {}", of(mean.value), rounded(error, quantity.unit)))

@@ -56,8 +56,8 @@ pub(crate) fn persson(table: &SweepTable) -> Vec<PerssonLine> {
 /// E* (Pa) and rms slope, if the theory applies to the rows of a scene.
 fn half_space(rows: &[Row], settings: &Value) -> Option<(f64, f64)> {
     let keys = &settings["surfaces"][rows.first()?.place.as_ref()?.surface];
-    let surface: SurfaceKeys = serde_json::from_value(keys["surface"].clone()).ok()?;
-    let contact: ContactKeys = serde_json::from_value(keys["contact"].clone()).ok()?;
+    let surface: SurfaceKeys = serde_json::from_value(given(&keys["surface"])).ok()?;
+    let contact: ContactKeys = serde_json::from_value(given(&keys["contact"])).ok()?;
     if contact.hardness.is_some() || contact.layer_thickness.is_some() || surface.is_shape() {
         return None;
     }
@@ -68,4 +68,10 @@ fn half_space(rows: &[Row], settings: &Value) -> Option<(f64, f64)> {
     let slopes = rows.iter().map(|row| row.number("rms_slope")).collect::<Option<Vec<f64>>>()?;
     let slope = slopes.iter().sum::<f64>() / slopes.len() as f64;
     (slope > 0.0).then_some((e_star, slope))
+}
+
+/// The keys that have a value.
+fn given(keys: &Value) -> Value {
+    let given = keys.as_object().into_iter().flatten().filter(|(_, value)| !value.is_null());
+    given.map(|(key, value)| (key.clone(), value.clone())).collect::<serde_json::Map<_, _>>().into()
 }
