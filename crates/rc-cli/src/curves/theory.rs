@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::table::{Row, SweepTable};
-use crate::scene::keys::{ContactKeys, SurfaceKeys};
+use crate::scene::keys::ContactKeys;
 use crate::scene::resolve;
 
 /// Number of points of a line.
@@ -14,6 +14,9 @@ const POINTS: usize = 80;
 
 /// Relative difference of E* h' below which two lines are one.
 const SAME: f64 = 1e-9;
+
+/// The keys that E* follows from.
+const MATERIAL: [&str; 5] = ["young", "poisson", "e_star", "young2", "poisson2"];
 
 /// A line of the theory.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -56,22 +59,23 @@ pub(crate) fn persson(table: &SweepTable) -> Vec<PerssonLine> {
 /// E* (Pa) and rms slope, if the theory applies to the rows of a scene.
 fn half_space(rows: &[Row], settings: &Value) -> Option<(f64, f64)> {
     let keys = &settings["surfaces"][rows.first()?.place.as_ref()?.surface];
-    let surface: SurfaceKeys = serde_json::from_value(given(&keys["surface"])).ok()?;
-    let contact: ContactKeys = serde_json::from_value(given(&keys["contact"])).ok()?;
-    if contact.hardness.is_some() || contact.layer_thickness.is_some() || surface.is_shape() {
+    let (surface, contact) = (&keys["surface"], &keys["contact"]);
+    let is_shape = !surface["shape"].is_null() && surface["waves"].is_null() && surface["heights"].is_null();
+    if is_shape || !contact["hardness"].is_null() || !contact["layer_thickness"].is_null() {
         return None;
     }
-    let cell = PeriodicCell::new(surface.cell?).ok()?;
+    let material: ContactKeys = serde_json::from_value(material(contact)).ok()?;
+    let cell = PeriodicCell::new(surface["cell"].as_f64()?).ok()?;
     // The load does not matter here, but a contact has one.
-    let loaded = ContactKeys { pressure: Some(1.0), penetration: None, force: None, ..contact };
+    let loaded = ContactKeys { pressure: Some(1.0), ..material };
     let e_star = resolve::contact(loaded, cell).ok()?.units.elasticity().e_star();
     let slopes = rows.iter().map(|row| row.number("rms_slope")).collect::<Option<Vec<f64>>>()?;
     let slope = slopes.iter().sum::<f64>() / slopes.len() as f64;
     (slope > 0.0).then_some((e_star, slope))
 }
 
-/// The keys that have a value.
-fn given(keys: &Value) -> Value {
-    let given = keys.as_object().into_iter().flatten().filter(|(_, value)| !value.is_null());
-    given.map(|(key, value)| (key.clone(), value.clone())).collect::<serde_json::Map<_, _>>().into()
+/// The keys of the material that have a value.
+fn material(contact: &Value) -> Value {
+    let given = MATERIAL.iter().filter(|key| !contact[**key].is_null());
+    given.map(|key| ((*key).to_owned(), contact[*key].clone())).collect::<serde_json::Map<_, _>>().into()
 }
