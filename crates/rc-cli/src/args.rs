@@ -2,6 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
+use crate::compare::args::CompareArgs;
 use crate::export::args::ExportArgs;
 use crate::help::help_flag;
 use crate::inspect::args::InspectArgs;
@@ -42,12 +43,14 @@ pub(crate) enum Command {
     Prepare(Box<PrepareArgs>),
     /// One contact under varied treatments of a measured map: how much the results depend on them
     Study(Box<StudyArgs>),
-    /// Statistics of a surface or a result: rms, slopes, spectrum, distributions
+    /// Statistics of a surface or a result; means over the seeds of a sweep
     Inspect(InspectArgs),
-    /// Pictures of a result or a surface
+    /// Pictures of a result or a surface, curves of a sweep
     Plot(PlotArgs),
     /// A result, a surface or a sweep as one HTML page that needs no network
     Report(ReportArgs),
+    /// Two results: a table of their numbers, and a picture of the difference of their fields
+    Compare(CompareArgs),
     /// A result as VTK for ParaView, PyVista and VisIt, or as Zarr for Python
     Export(ExportArgs),
     /// Completions for a shell, on standard output

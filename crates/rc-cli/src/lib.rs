@@ -28,6 +28,8 @@ pub mod args;
 pub mod error;
 pub mod scene;
 
+mod compare;
+mod curves;
 mod export;
 mod files;
 mod help;
@@ -98,6 +100,7 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
         Command::Inspect(args) => inspect::run(&args),
         Command::Plot(args) => plot::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::Compare(args) => compare::command::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Completions(args) => manual::completions(&Cli::command(), args.shell),
         Command::Man(args) => manual::pages(Cli::command(), &args.out),

@@ -1,4 +1,4 @@
-//! `rc plot`: pictures of a result or of a surface.
+//! `rc plot`: pictures of a result, a surface or a sweep.
 
 use std::path::{Path, PathBuf};
 
@@ -7,6 +7,8 @@ use plotters::prelude::DrawingBackend;
 use plotters::style::RGBColor;
 use rc_core::Field;
 
+use crate::curves::folder::Rows;
+use crate::curves::pictures;
 use crate::error::CliError;
 use crate::files::result::ResultFolder;
 use crate::inspect::{draw_surface, folder_of, is_scene};
@@ -28,7 +30,7 @@ const TEXT: f64 = 26.0;
 /// Arguments of `rc plot`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct PlotArgs {
-    /// Folder of a result or of a surface
+    /// Folder of a result, a surface or a sweep
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
     /// Folder for the pictures [default: the result's own]
@@ -49,11 +51,30 @@ pub(crate) fn run(args: &PlotArgs) -> Result<(), CliError> {
         let names = draw_surface(&args.folder, target, args.quiet)?;
         return if args.quiet { Ok(()) } else { terminal::print_names(target, &names) };
     }
-    let result = ResultFolder::read_finite(&args.folder)?;
     let target = args.out.as_deref().unwrap_or(&args.folder);
+    match Rows::of(&args.folder)? {
+        Some(Rows::Sweep) => {
+            files::check_folder(target)?;
+            let names = pictures::write(&args.folder, target)?;
+            return if args.quiet { Ok(()) } else { terminal::print_names(target, &names) };
+        }
+        Some(Rows::Study(_)) => return Err(of_study(&args.folder)),
+        None => {}
+    }
+    let result = ResultFolder::read_finite(&args.folder)?;
     files::check_folder(target)?;
     let names = write(target, &result)?;
     if args.quiet { Ok(()) } else { terminal::print_names(target, &names) }
+}
+
+/// The error for a study, whose pictures are there already.
+fn of_study(folder: &Path) -> CliError {
+    let message = format_args!(
+        "a study, whose contacts are in its folder contact/; rc report {0} draws its curves, and rc plot {0}/sweep those of its \
+         rows",
+        folder.display()
+    );
+    CliError::in_file(folder, message)
 }
 
 fn write(target: &Path, result: &ResultFolder) -> Result<Vec<String>, CliError> {

@@ -1,6 +1,8 @@
 //! Colour maps with visually even steps.
 //!
-//! They are viridis and magma of matplotlib, CC0, by N. Smith and S. van der Walt.
+//! They are viridis and magma of matplotlib, CC0, by N. Smith and S. van der Walt, and the ends of ColorBrewer's RdBu.
+//!
+//! [`CURVES`] are colours of lines.
 
 use plotters::style::RGBColor;
 
@@ -13,7 +15,25 @@ pub enum Palette {
     Viridis,
     /// Light grey to black.
     Ink,
+    /// Blue through white to red, for differences: 1/2 is none.
+    Difference,
 }
+
+/// Ten colours of lines that are also told apart by people with a colour deficiency.
+///
+/// Source: M. A. Petroff, *Accessible color sequences for data visualization*, arXiv 2107.02270 (2021).
+pub const CURVES: [RGBColor; 10] = [
+    RGBColor(63, 144, 218),
+    RGBColor(255, 169, 14),
+    RGBColor(189, 31, 1),
+    RGBColor(148, 164, 162),
+    RGBColor(131, 45, 182),
+    RGBColor(169, 107, 89),
+    RGBColor(231, 99, 0),
+    RGBColor(185, 172, 112),
+    RGBColor(113, 117, 129),
+    RGBColor(146, 218, 221),
+];
 
 const HEAT: [(u8, u8, u8); 17] = [
     (255, 255, 255),
@@ -55,6 +75,8 @@ const VIRIDIS: [(u8, u8, u8); 17] = [
     (253, 231, 37),
 ];
 
+const DIFFERENCE: [(u8, u8, u8); 5] = [(5, 48, 97), (67, 147, 195), (255, 255, 255), (214, 96, 77), (103, 0, 31)];
+
 const INK: [(u8, u8, u8); 2] = [(238, 240, 242), (23, 28, 40)];
 
 impl Palette {
@@ -67,6 +89,7 @@ impl Palette {
             Self::Heat => &HEAT,
             Self::Viridis => &VIRIDIS,
             Self::Ink => &INK,
+            Self::Difference => &DIFFERENCE,
         }
     }
 

@@ -15,10 +15,10 @@ use plotters::coord::Shift;
 use plotters::prelude::{DrawingArea, DrawingBackend};
 use thiserror::Error;
 
-pub use colour::Palette;
+pub use colour::{CURVES, Palette};
 pub use file::{save_png, save_small_png, save_svg};
 pub use font::{FONT, register_font};
-pub use lines::{LinePlot, LineStyle, Series, draw_lines};
+pub use lines::{LinePlot, LineStyle, LogAxes, Series, draw_lines, draw_lines_on};
 pub use map::{Map, Shade, WALL, bitmap_size, draw_map, map_extent, range_of_most};
 pub use maps::{ContactPicture, ContactRows, MapPicture};
 pub use raster::{PixelMean, Raster};

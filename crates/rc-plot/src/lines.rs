@@ -1,6 +1,10 @@
-//! Line plots with linear axes.
+//! Line plots with linear or logarithmic axes.
 
-use plotters::chart::{ChartBuilder, SeriesLabelPosition};
+use plotters::chart::{ChartBuilder, ChartContext, SeriesLabelPosition};
+use plotters::coord::cartesian::Cartesian2d;
+use plotters::coord::combinators::BindKeyPoints as _;
+use plotters::coord::combinators::IntoLogRange as _;
+use plotters::coord::ranged1d::{Ranged, ValueFormatter};
 use plotters::element::{Circle, EmptyElement, PathElement};
 use plotters::prelude::{DrawingBackend, IntoFont as _};
 use plotters::series::{DashedLineSeries, LineSeries};
@@ -50,18 +54,120 @@ pub enum LineStyle {
     Dots,
 }
 
-/// Draws `plot` into `area`, with text of `font` pixels.
+/// Which axes are logarithmic. Their ranges must be positive.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LogAxes {
+    /// Whether x is.
+    pub x: bool,
+    /// Whether y is.
+    pub y: bool,
+}
+
+/// Draws `plot` into `area` on linear axes, with text of `font` pixels.
 ///
 /// # Errors
 /// [`PictureError`] of the backend.
 pub fn draw_lines<B: DrawingBackend>(area: &Area<B>, plot: &LinePlot<'_>, font: f64) -> Result<(), PictureError> {
-    let mut chart = ChartBuilder::on(area)
+    let mut chart = builder(area, plot, font);
+    let chart = chart.build_cartesian_2d(plot.x.0..plot.x.1, plot.y.0..plot.y.1).map_err(PictureError::new)?;
+    draw_on(chart, plot, font, SeriesLabelPosition::UpperRight)
+}
+
+/// As [`draw_lines`], with the legend in the emptiest corner, and `log` axes.
+///
+/// # Errors
+/// [`PictureError`] of the backend.
+pub fn draw_lines_on<B: DrawingBackend>(
+    area: &Area<B>,
+    plot: &LinePlot<'_>,
+    log: LogAxes,
+    font: f64,
+) -> Result<(), PictureError> {
+    let mut chart = builder(area, plot, font);
+    let (x, y, corner) = (plot.x.0..plot.x.1, plot.y.0..plot.y.1, emptiest_corner(plot, log));
+    let fail = PictureError::new;
+    let marks = |(low, high): (f64, f64)| log_marks(low, high);
+    let (x_marks, y_marks) = (marks(plot.x), marks(plot.y));
+    match (log.x, log.y) {
+        (false, false) => draw_on(chart.build_cartesian_2d(x, y).map_err(fail)?, plot, font, corner),
+        (true, false) => draw_on(
+            chart.build_cartesian_2d(x.log_scale().with_key_points(x_marks), y).map_err(fail)?,
+            plot,
+            font,
+            corner,
+        ),
+        (false, true) => draw_on(
+            chart.build_cartesian_2d(x, y.log_scale().with_key_points(y_marks)).map_err(fail)?,
+            plot,
+            font,
+            corner,
+        ),
+        (true, true) => draw_on(
+            chart
+                .build_cartesian_2d(x.log_scale().with_key_points(x_marks), y.log_scale().with_key_points(y_marks))
+                .map_err(fail)?,
+            plot,
+            font,
+            corner,
+        ),
+    }
+}
+
+/// Powers of ten in a positive range; with fewer than three of them also twice and five times these.
+fn log_marks(low: f64, high: f64) -> Vec<f64> {
+    let exponents = low.log10().floor() as i32..=high.log10().ceil() as i32;
+    let marks = |factors: &'static [f64]| -> Vec<f64> {
+        let all = exponents.clone().flat_map(|e| factors.iter().map(move |factor| factor * 10_f64.powi(e)));
+        all.filter(|mark| (low..=high).contains(mark)).collect()
+    };
+    let decades = marks(&[1.0]);
+    if decades.len() < 3 {
+        return marks(&[1.0, 2.0, 5.0]);
+    }
+    let every = decades.len().div_ceil(8);
+    decades.into_iter().step_by(every).collect()
+}
+
+fn builder<'a, 'b, B: DrawingBackend>(area: &'a Area<B>, plot: &LinePlot<'_>, font: f64) -> ChartBuilder<'a, 'b, B> {
+    let mut chart = ChartBuilder::on(area);
+    chart
         .caption(plot.title, (FONT, 1.1 * font).into_font().color(&BLACK))
         .margin((0.8 * font) as i32)
         .x_label_area_size((2.6 * font) as i32)
-        .y_label_area_size((4.0 * font) as i32)
-        .build_cartesian_2d(plot.x.0..plot.x.1, plot.y.0..plot.y.1)
-        .map_err(PictureError::new)?;
+        .y_label_area_size((4.0 * font) as i32);
+    chart
+}
+
+/// The corner of the plot with the fewest points, those of drawn segments included.
+fn emptiest_corner(plot: &LinePlot<'_>, log: LogAxes) -> SeriesLabelPosition {
+    let part = |value: f64, (low, high): (f64, f64), is_log: bool| {
+        if is_log { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) }
+    };
+    let place = |at: &(f64, f64)| (part(at.0, plot.x, log.x), part(at.1, plot.y, log.y));
+    let places: Vec<(f64, f64)> = plot.series.iter().flat_map(|series| series.points.iter().map(place)).collect();
+    let near = |right: bool, upper: bool| {
+        let is_near = |part: f64, at_end: bool| if at_end { part > 0.55 } else { part < 0.45 };
+        places.iter().filter(|(x, y)| is_near(*x, right) && is_near(*y, upper)).count()
+    };
+    let corners = [
+        (near(false, true), SeriesLabelPosition::UpperLeft),
+        (near(true, true), SeriesLabelPosition::UpperRight),
+        (near(true, false), SeriesLabelPosition::LowerRight),
+        (near(false, false), SeriesLabelPosition::LowerLeft),
+    ];
+    corners.into_iter().min_by_key(|(n, _)| *n).map_or(SeriesLabelPosition::UpperRight, |(_, corner)| corner)
+}
+
+fn draw_on<'a, B: DrawingBackend + 'a, X, Y>(
+    mut chart: ChartContext<'a, B, Cartesian2d<X, Y>>,
+    plot: &LinePlot<'_>,
+    font: f64,
+    legend: SeriesLabelPosition,
+) -> Result<(), PictureError>
+where
+    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
     chart
         .configure_mesh()
         .x_desc(plot.x_label)
@@ -99,7 +205,7 @@ pub fn draw_lines<B: DrawingBackend>(area: &Area<B>, plot: &LinePlot<'_>, font: 
     if named {
         chart
             .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
+            .position(legend)
             .legend_area_size((1.8 * font) as u32)
             .label_font((FONT, 0.85 * font).into_font().color(&BLACK))
             .background_style(WHITE.mix(0.85))

@@ -35,6 +35,14 @@ impl ContactPicture {
         rows.finish(pressure_unit, side)
     }
 
+    /// The same picture with colours up to the pressure `greatest`, in its own unit.
+    ///
+    /// Several pictures with the same end can be compared.
+    #[must_use]
+    pub fn up_to(self, greatest: f64) -> Self {
+        Self { greatest, ..self }
+    }
+
     /// The same picture for means over blocks.
     ///
     /// A block with a pressure is touched, but not in contact everywhere.

@@ -1,14 +1,14 @@
 //! Contents of a journal: its first line, its rows, and how to read them.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::deal::Deal;
 use crate::error::SweepError;
-use crate::folder::JOURNAL_FILE;
+use crate::folder::{self, JOURNAL_FILE};
 use crate::settings;
 use crate::shard::{MAX_ROWS, Shard, SweepShape};
 
@@ -130,6 +130,27 @@ pub fn finished_rows(journal: &[u8]) -> Result<usize, SweepError> {
 #[must_use]
 pub fn settings_in(folder: &Path) -> Option<Value> {
     Some(Content::read(folder).ok()?.header.settings)
+}
+
+/// Where a row of a sweep comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RowPlace {
+    /// Index of its surface in the settings.
+    pub surface: usize,
+    /// The folder of its fields, if these are stored.
+    pub fields: Option<PathBuf>,
+}
+
+/// The places of the finished rows of the sweep in `folder`, in the order of its table; `None` without a valid journal.
+#[must_use]
+pub fn rows_in(folder: &Path) -> Option<Vec<RowPlace>> {
+    let content = Content::read(folder).ok()?;
+    let loads = content.header.shape.loads.max(1);
+    let place = |index: usize| RowPlace {
+        surface: index / loads,
+        fields: folder::has_fields(folder, index).then(|| folder::fields_folder(folder, index)),
+    };
+    Some(content.rows.keys().map(|index| place(*index)).collect())
 }
 
 /// Contents of a journal.

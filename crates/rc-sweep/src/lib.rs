@@ -76,7 +76,7 @@ mod table;
 mod warning;
 mod workers;
 
-pub use content::{Cells, SweepRows, finished_rows, settings_in};
+pub use content::{Cells, RowPlace, SweepRows, finished_rows, rows_in, settings_in};
 pub use deal::Deal;
 pub use ensemble::{Ensemble, EnsembleLevel, EnsembleMean, EnsemblePlan, Realisation, WantedMean};
 pub use error::SweepError;

@@ -47,8 +47,9 @@ class Axis {
 let charts = 0;
 
 /**
- * A chart of `series` ({ name, points, colour, kind: "line" | "steps" | "dots" | "fill", dashed, faint }) on axes `x` and `y`
- * ({ label, unit, log, from, to }). `switches` names the axes that get a button for their logarithm.
+ * A chart of `series` ({ name, points, colour, kind: "line" | "steps" | "dots" | "fill" | "bars", dashed, faint }) on axes `x`
+ * and `y` ({ label, unit, log, from, to }). Points of bars are [x, y, error of x, error of y]; `dashed` may be the lengths of
+ * dashes. `switches` names the axes that get a button for their logarithm.
  */
 class Chart {
   constructor({ x, y, series, switches = [] }) {
@@ -79,7 +80,8 @@ class Chart {
   }
 
   redraw() {
-    const of = (i) => this.series.flatMap((one) => one.points.map((point) => point[i]));
+    const ends = (point, i) => [point[i] - point[i + 2], point[i], point[i] + point[i + 2]];
+    const of = (i) => this.series.flatMap(({ kind, points }) => points.flatMap((point) => (kind === "bars" ? ends(point, i) : point[i])));
     const { width, height, left, right, top, bottom } = CHART;
     this.across = new Axis(this.x, of(0), left, width - right);
     this.up = new Axis(this.y, of(1), height - bottom, top);
@@ -114,6 +116,7 @@ class Chart {
   }
 
   curve({ points, colour, kind = "line", dashed, faint }) {
+    if (kind === "bars") return this.bars(points, colour);
     const known = (point) => point.every(Number.isFinite);
     const place = ([x, y]) => [this.across.place(x), this.up.place(y)];
     const shown = points.map((point) => (known(point) && known(place(point)) ? place(point) : null));
@@ -135,8 +138,21 @@ class Chart {
       [pen, this.last] = ["L", y];
       return step;
     });
-    const dashes = dashed ? { "stroke-dasharray": "6 4" } : {};
+    const dashes = dashed ? { "stroke-dasharray": dashed === true ? "6 4" : dashed } : {};
     return shape("path", { d: path.join(""), stroke: colour, class: faint ? "series faint" : "series", ...dashes });
+  }
+
+  /** Error bars with caps; an end below a logarithmic axis is below the frame. */
+  bars(points, colour) {
+    const ends = (axis, value, error) => [value - error, value + error].map((end) => axis.place(axis.log ? Math.max(end, 0.1 * axis.low) : end));
+    const one = ([x, y, ofX, ofY]) => {
+      const [px, py] = [this.across.place(x), this.up.place(y)];
+      const [[left, right], [low, high]] = [ends(this.across, x, ofX), ends(this.up, y, ofY)];
+      const vertical = ofY > 0 ? `M${px} ${low}V${high}M${px - 4} ${low}h8M${px - 4} ${high}h8` : "";
+      return vertical + (ofX > 0 && right - left > 1 ? `M${left} ${py}H${right}M${left} ${py - 4}v8M${right} ${py - 4}v8` : "");
+    };
+    const shown = points.filter((point) => point.every(Number.isFinite) && Number.isFinite(this.across.place(point[0])) && Number.isFinite(this.up.place(point[1])));
+    return shape("path", { d: shown.map(one).join(""), stroke: colour, class: "series bars" });
   }
 
   read(event) {

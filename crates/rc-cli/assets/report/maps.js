@@ -102,6 +102,14 @@ class FieldMap {
     context.putImageData(picture, 0, 0);
   }
 
+  /** Another field of the same cell, in the same colours. */
+  show(field) {
+    this.field = field;
+    Object.assign(this.bitmap, { width: field.nx, height: field.ny });
+    this.colour();
+    this.paint();
+  }
+
   /** Paints the visible part, with the cursor unless it is a picture to keep. */
   paint(withCursor = true) {
     const { view, canvas } = this;

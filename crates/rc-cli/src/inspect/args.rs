@@ -13,7 +13,7 @@ use crate::scene::values::{GridSpec, Marks};
 /// Arguments of `rc inspect`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct InspectArgs {
-    /// A height map, a folder of a result or a surface, or a scene; with --spectrum, a file of waves
+    /// A height map, a folder of a result, surface or sweep, or a scene; with --spectrum, a file of waves
     ///
     /// A result is also found by its summary.json or pressure.npy.
     #[arg(value_name = "FILE")]
@@ -70,7 +70,7 @@ pub(crate) struct InspectArgs {
     /// Profiles: file for the spectrum of the isotropic surface, as rc surface --psd reads it
     #[arg(long, value_name = "FILE")]
     pub(crate) psd_out: Option<PathBuf>,
-    /// Folder for pictures: heights, spectrum, distribution; of a profile also psd.csv
+    /// Folder for pictures of a map or profile (also psd.csv), or for means.csv of a sweep
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print the statistics as JSON, with the whole spectrum

@@ -1,4 +1,4 @@
-//! `rc inspect`: statistics of a height map or of a result.
+//! `rc inspect`: statistics of a height map, a result or a sweep.
 
 pub(crate) mod args;
 pub(crate) mod record;
@@ -23,6 +23,8 @@ use serde::Serialize;
 
 use self::args::InspectArgs;
 use self::record::{ChannelRow, SurfaceRecord};
+use crate::curves::folder::Rows;
+use crate::curves::text as curves_text;
 use crate::error::CliError;
 use crate::files::names::{SCENE_FILE, SUMMARY_FILE};
 use crate::files::result::ResultFolder;
@@ -53,6 +55,9 @@ struct ResultStatistics {
 /// [`CliError::Input`] when the file is neither a height map nor part of a result.
 pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
     let of_scene = is_scene(&args.file) && !args.spectrum;
+    if let Some(rows) = Rows::of(&args.file)?.filter(|_| !args.spectrum && !of_scene) {
+        return terminal::print(&of_rows(args, &rows)?);
+    }
     let text = match result_folder(&args.file).filter(|_| !args.spectrum && !of_scene) {
         Some(_) if args.cell.is_some() || args.cell_y.is_some() => {
             return Err(CliError::input("cell: a result has its own, in its scene.toml; omit --cell and --cell-y"));
@@ -78,6 +83,21 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
         },
     };
     terminal::print(&text)
+}
+
+/// The text about a sweep or a study.
+fn of_rows(args: &InspectArgs, rows: &Rows) -> Result<String, CliError> {
+    if args.cell.is_some() || args.cell_y.is_some() {
+        return Err(CliError::input("cell: the rows of a sweep have their own; omit --cell and --cell-y"));
+    }
+    match rows {
+        Rows::Sweep => curves_text::of_sweep(&args.file, args.json, args.out.as_deref()),
+        Rows::Study(_) if args.out.is_some() => {
+            Err(CliError::input("out: the table of a study is its study.csv; omit --out"))
+        }
+        Rows::Study(record) if args.json => Ok(to_json(record)),
+        Rows::Study(record) => Ok(record.text()),
+    }
 }
 
 /// The folder of a scene file, or the folder itself.

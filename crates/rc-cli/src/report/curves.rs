@@ -1,74 +1,46 @@
-//! The page of a sweep: area-load and load-penetration curves.
+//! The page of a sweep: curves with their errors, contact maps of its rows, and the rows.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::Value;
 
+use super::frames::Frames;
 use super::page::{Page, Text, Tile, made};
 use super::{percolation, sweep_command};
+use crate::curves::columns::{PRESSURE, QUANTITIES, Quantity};
+use crate::curves::means::{AtLoad, Mean};
+use crate::curves::table::{Row, SweepTable};
+use crate::curves::text::cell;
+use crate::curves::theory::{PerssonLine, persson};
 use crate::error::CliError;
 use rc_core::quantity::{Scale, count, digits, engineering};
-use rc_sweep::{TABLE_FILE, WarningCode};
-
-/// Units of keys that may be varied.
-const UNITS: [(&str, &str); 12] = [
-    ("hardness", "Pa"),
-    ("e_star", "Pa"),
-    ("young", "Pa"),
-    ("young2", "Pa"),
-    ("force", "N"),
-    ("cell", "m"),
-    ("cell_y", "m"),
-    ("rms", "m"),
-    ("layer_thickness", "m"),
-    ("radius", "m"),
-    ("wavelength", "m"),
-    ("wave_amplitude", "m"),
-];
-
-/// The columns of `sweep.csv` that the page uses, in SI units.
-#[derive(Clone, Debug, Deserialize)]
-struct Row {
-    /// Name of the scene, with the varied keys and their values.
-    #[serde(default)]
-    scene: String,
-    /// The same in the words of the page.
-    #[serde(skip)]
-    label: String,
-    seed: Option<u64>,
-    control_value: f64,
-    control: String,
-    status: String,
-    mean_pressure: f64,
-    penetration: f64,
-    area_fraction: f64,
-    area_fraction_error: f64,
-    mean_gap: f64,
-    contact_stiffness: Option<f64>,
-    #[serde(default)]
-    contact_conductance: Option<f64>,
-    #[serde(default)]
-    conductance: Option<f64>,
-    #[serde(default)]
-    permeance_x: Option<f64>,
-    #[serde(default)]
-    permeance_y: Option<f64>,
-    /// Codes of the warnings, with blanks between them.
-    #[serde(default)]
-    warnings: Option<String>,
-    wall_seconds: f64,
-}
+use rc_sweep::WarningCode;
 
 /// The data of a page of a sweep, without those of all pages.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Curves {
     scenes: Vec<SceneCurves>,
+    /// Whether the loads have a constant ratio, so that logarithmic axes show them evenly.
+    geometric: bool,
+    persson: Vec<PerssonLine>,
+    frames: Option<Frames>,
+    /// Sentence about the contact maps.
+    frames_note: String,
+    means: Option<Table>,
     heads: Vec<&'static str>,
     rows: Vec<Vec<String>>,
-    note: &'static str,
+    note: String,
     /// Sentence about the end of percolation, for a sweep with flows.
     percolation: Option<String>,
+}
+
+/// A table of text.
+#[derive(Clone, Debug, Serialize)]
+struct Table {
+    heads: Vec<&'static str>,
+    rows: Vec<Vec<String>>,
 }
 
 /// The curves of one scene.
@@ -82,31 +54,17 @@ struct SceneCurves {
     mean: Vec<Point>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct Point {
-    pressure: f64,
-    area: f64,
-    penetration: f64,
-    gap: f64,
-    /// Stiffness; not finite in full contact.
-    stiffness: Option<f64>,
-    /// Conductance per conductivity (1/m); not finite in full contact.
-    conductance: Option<f64>,
-    /// Conductance for the given conductivities, in their unit per metre.
-    of_bodies: Option<f64>,
-    /// Mean permeance of both axes (m³), if flows were computed.
-    permeance: Option<f64>,
-}
+/// The quantities at one load by their names, and their errors by the names with `_error`.
+type Point = BTreeMap<String, f64>;
 
-/// The page of the sweep in `folder`, whose journal has `settings`.
+/// The page of the sweep in `folder`.
 ///
 /// # Errors
-/// [`CliError::Input`] when `sweep.csv` does not have the format of a sweep, or has no rows.
-pub(super) fn page(folder: &Path, settings: Option<&Value>) -> Result<Page<Curves>, CliError> {
-    let rows = read(&folder.join(TABLE_FILE))?;
-    let scenes: Vec<SceneCurves> = groups(&rows, |row| &row.scene).into_iter().map(SceneCurves::of).collect();
-    let surfaces: usize = scenes.iter().map(|scene| scene.seeds.len()).sum();
-    let (status, good) = status(&rows, settings);
+/// [`CliError::Input`] when `sweep.csv` does not have the format of a sweep, has no rows, or fields cannot be read.
+pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
+    let table = SweepTable::read(folder)?;
+    let (rows, settings) = (&table.rows, table.settings.as_ref());
+    let (status, good) = status(rows, settings);
     let text = settings.and_then(|settings| serde_json::to_string_pretty(settings).ok());
     let files = text.map(|text| Text { title: "Settings of the sweep", text }).into_iter().collect();
     Ok(Page {
@@ -114,65 +72,29 @@ pub(super) fn page(folder: &Path, settings: Option<&Value>) -> Result<Page<Curve
         subtitle: format!(
             "{} on {}, at prescribed {}s",
             count(rows.len(), "row"),
-            count(surfaces, "surface"),
+            count(table.surfaces().len(), "surface"),
             rows[0].control
         ),
         status,
         good,
-        warnings: warnings(&rows),
-        tiles: tiles(&rows),
+        warnings: warnings(rows),
+        tiles: tiles(rows),
         commands: settings.map_or_else(Vec::new, sweep_command::commands),
         files,
         made: made(),
         kind: "sweep",
-        body: table(scenes, &rows),
+        body: body(&table)?,
     })
 }
 
 /// One line for each code of a warning, with the number of its rows.
 fn warnings(rows: &[Row]) -> Vec<String> {
-    let codes = |row: &Row| row.warnings.clone().unwrap_or_default();
-    let has = |row: &&Row, code: WarningCode| codes(row).split(' ').any(|found| found == code.name());
+    let has = |row: &&Row, code: WarningCode| row.warnings.split(' ').any(|found| found == code.name());
     let told = |code: WarningCode| {
         let n = rows.iter().filter(|row| has(row, code)).count();
         (n > 0).then(|| format!("{code}: {} ({n} of {})", code.meaning(), count(rows.len(), "row")))
     };
     WarningCode::ALL.into_iter().filter_map(told).collect()
-}
-
-fn read(path: &Path) -> Result<Vec<Row>, CliError> {
-    let fail = |cause: csv::Error| CliError::in_file(path, format_args!("not a table of rc sweep: {cause}"));
-    let mut reader = csv::Reader::from_path(path).map_err(fail)?;
-    let heads = reader.headers().map_err(fail)?.clone();
-    let row = |record: csv::StringRecord| -> Result<Row, csv::Error> {
-        let row: Row = record.deserialize(Some(&heads))?;
-        let varied = varied(&heads, &record);
-        let named = |words: fn(&str, &str) -> String| {
-            let parts = varied.iter().map(|(key, value)| words(key, value));
-            [row.scene.clone()].into_iter().chain(parts).filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
-        };
-        let (scene, label) = (named(|key, value| format!("{key} {value}")), named(in_words));
-        Ok(Row { scene, label, ..row })
-    };
-    let rows: Vec<Row> = reader.records().map(|record| row(record?)).collect::<Result<_, _>>().map_err(fail)?;
-    if rows.is_empty() { Err(CliError::in_file(path, "has no rows")) } else { Ok(rows) }
-}
-
-/// The varied keys of a row with their values. They are between load and status.
-fn varied<'a>(heads: &'a csv::StringRecord, record: &'a csv::StringRecord) -> Vec<(&'a str, &'a str)> {
-    let cells = heads.iter().zip(record).skip_while(|(head, _)| *head != "control_value").skip(1);
-    cells.take_while(|(head, _)| *head != "status").collect()
-}
-
-/// A varied key with its value, such as `hardness = 5 MPa`.
-fn in_words(key: &str, value: &str) -> String {
-    let unit = UNITS.iter().find(|(name, _)| *name == key).map(|(_, unit)| *unit);
-    let value = match (value.parse::<f64>(), unit) {
-        (Ok(number), Some(unit)) => engineering(number, unit),
-        (Ok(number), None) => number.to_string(),
-        (Err(_), _) => value.to_owned(),
-    };
-    format!("{} = {value}", key.replace('_', " "))
 }
 
 /// A sentence about the rows, and whether all planned rows exist and converged.
@@ -192,146 +114,131 @@ fn status(rows: &[Row], settings: Option<&Value>) -> (String, bool) {
     }
 }
 
-/// Runs of rows with the same key.
-fn groups<K: PartialEq>(rows: &[Row], key: impl Fn(&Row) -> &K) -> Vec<&[Row]> {
-    rows.chunk_by(|a, b| key(a) == key(b)).collect()
-}
-
 impl SceneCurves {
     fn of(rows: &[Row]) -> Self {
-        let seeds: Vec<Vec<Point>> =
-            groups(rows, |row| &row.seed).into_iter().map(|rows| rows.iter().map(Point::of).collect()).collect();
-        let mut loads: Vec<f64> = rows.iter().map(|row| row.control_value).collect();
-        loads.sort_by(f64::total_cmp);
-        loads.dedup();
-        let at = |load: f64| -> Vec<Point> {
-            rows.iter().filter(|row| row.control_value.total_cmp(&load).is_eq()).map(Point::of).collect()
-        };
-        // A mean over a part of the seeds would jump where the curve of a seed ends.
-        let of_all = loads.into_iter().map(at).filter(|points| points.len() == seeds.len());
-        let mean = of_all.map(|points| Point::mean(&points)).collect();
-        Self { name: rows.first().map(|row| row.label.clone()).unwrap_or_default(), seeds, mean }
+        let of_row = |row: &Row| point(|quantity| quantity.of(&row.cells));
+        let of_mean = |at: &AtLoad<'_>| point(|quantity| at.mean(quantity).map(|mean| [mean.value, mean.error()]));
+        let seeds = rows.chunk_by(|a, b| a.seed == b.seed).map(|rows| rows.iter().map(of_row).collect());
+        Self {
+            name: rows.first().map(|row| row.label.clone()).unwrap_or_default(),
+            seeds: seeds.collect(),
+            mean: AtLoad::of_all_seeds(rows).iter().map(of_mean).collect(),
+        }
     }
 }
 
-impl Point {
-    fn of(row: &Row) -> Self {
-        Self {
-            pressure: row.mean_pressure,
-            area: row.area_fraction,
-            penetration: row.penetration,
-            gap: row.mean_gap,
-            stiffness: row.contact_stiffness,
-            conductance: row.contact_conductance,
-            of_bodies: row.conductance,
-            permeance: row.permeance_x.zip(row.permeance_y).map(|(x, y)| 0.5 * (x + y)),
+/// The point with value and error of each quantity that has them.
+fn point(of: impl Fn(Quantity) -> Option<[f64; 2]>) -> Point {
+    let mut point = Point::new();
+    for quantity in [PRESSURE].into_iter().chain(QUANTITIES) {
+        if let Some([value, error]) = of(quantity) {
+            point.insert(quantity.name.to_owned(), value);
+            point.insert(format!("{}_error", quantity.name), error);
         }
     }
-
-    fn mean(points: &[Self]) -> Self {
-        let mean = |of: &dyn Fn(&Self) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
-        let finite = |of: &dyn Fn(&Self) -> Option<f64>| {
-            Some(mean(&|point| of(point).unwrap_or(f64::INFINITY))).filter(|value| value.is_finite())
-        };
-        Self {
-            pressure: mean(&|point| point.pressure),
-            area: mean(&|point| point.area),
-            penetration: mean(&|point| point.penetration),
-            gap: mean(&|point| point.gap),
-            stiffness: finite(&|point| point.stiffness),
-            conductance: finite(&|point| point.conductance),
-            of_bodies: finite(&|point| point.of_bodies),
-            permeance: finite(&|point| point.permeance),
-        }
-    }
+    point
 }
 
 fn tiles(rows: &[Row]) -> Vec<Tile> {
-    let range = |of: fn(&Row) -> f64| {
-        rows.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+    let range = |key: &str| {
+        let values = rows.iter().filter_map(|row| row.number(key));
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
     };
-    let from_to = |of, unit| {
-        let (low, high) = range(of);
+    let from_to = |key: &str, unit| {
+        let (low, high) = range(key);
         let scale = Scale::of(high, unit);
         format!("{} – {} {}", digits(low / scale.factor, 3), digits(high / scale.factor, 3), scale.unit())
     };
-    let (low, high) = range(|row| 100.0 * row.area_fraction);
-    let seconds: f64 = rows.iter().map(|row| row.wall_seconds).sum();
+    let (low, high) = range("area_fraction");
+    let seconds: f64 = rows.iter().filter_map(|row| row.number("wall_seconds")).sum();
     vec![
         Tile { name: "rows", value: rows.len().to_string() },
-        Tile { name: "mean pressure", value: from_to(|row| row.mean_pressure, "Pa") },
-        Tile { name: "contact area", value: format!("{} – {} %", digits(low, 3), digits(high, 3)) },
-        Tile { name: "penetration", value: from_to(|row| row.penetration, "m") },
+        Tile { name: "mean pressure", value: from_to("mean_pressure", "Pa") },
+        Tile { name: "contact area", value: format!("{} – {} %", digits(100.0 * low, 3), digits(100.0 * high, 3)) },
+        Tile { name: "penetration", value: from_to("penetration", "m") },
         Tile { name: "time of all rows", value: format!("{} s", digits(seconds, 3)) },
     ]
 }
 
-fn table(scenes: Vec<SceneCurves>, rows: &[Row]) -> Curves {
+fn body(table: &SweepTable) -> Result<Curves, CliError> {
+    let (frames, frames_note) = Frames::of(table)?;
+    let scenes: Vec<SceneCurves> = table.scenes().into_iter().map(SceneCurves::of).collect();
     let several = scenes.len() > 1;
-    let cells = |row: &Row| {
-        let mut cells = if several { vec![row.label.clone()] } else { Vec::new() };
-        cells.extend([
-            row.seed.map_or_else(|| "–".to_owned(), |seed| seed.to_string()),
-            engineering(row.mean_pressure, "Pa"),
-            engineering(row.penetration, "m"),
-            format!("{} ± {}", digits(100.0 * row.area_fraction, 4), digits(100.0 * row.area_fraction_error, 1)),
-            engineering(row.mean_gap, "m"),
-            row.contact_stiffness.map_or_else(|| "infinite".to_owned(), |value| engineering(value, "Pa/m")),
-            row.status.replace('_', " "),
-        ]);
-        cells
-    };
-    let name = if rows.iter().any(|row| row.label != row.scene) { "variation" } else { "scene" };
+    let flows = table.rows.iter().filter_map(|row| {
+        let key = (row.scene.clone(), row.seed);
+        Some((key, row.number("area_fraction")?, [row.number("permeance_x")?, row.number("permeance_y")?]))
+    });
+    let name = if table.rows.iter().any(|row| row.label != row.scene) { "variation" } else { "scene" };
     let mut heads = if several { vec![name] } else { Vec::new() };
     heads.extend(["seed", "mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness", "status"]);
-    let flows = rows.iter().filter_map(|row| {
-        let key = (row.scene.clone(), row.seed);
-        Some((key, row.area_fraction, [row.permeance_x?, row.permeance_y?]))
-    });
-    Curves {
+    let persson = persson(table);
+    Ok(Curves {
         percolation: percolation::note(flows.collect()),
-        scenes,
+        geometric: table.is_geometric(),
+        means: means(table, name),
         heads,
-        rows: rows.iter().map(cells).collect(),
-        note: "Thin lines are single surfaces. Thick lines with dots are means over the surfaces, at loads that all surfaces have. \
-               Penetration is counted from first touch. Linear axes begin at zero, but logarithmic ones do not.",
-    }
+        rows: table.rows.iter().map(|row| cells(row, several)).collect(),
+        note: note(&scenes, !persson.is_empty()),
+        scenes,
+        persson,
+        frames,
+        frames_note,
+    })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+fn note(scenes: &[SceneCurves], has_theory: bool) -> String {
+    let bars = if scenes.iter().any(|scene| scene.seeds.len() > 1) {
+        "Thin lines are single surfaces. Thick lines with dots are means over the surfaces, at loads that all surfaces have. The bar \
+         of a mean is the root of the sum of the squares of its standard error and of the mean error bar of the mesh."
+    } else {
+        "Bars are the error bars of the mesh."
+    };
+    let theory = if has_theory {
+        " Persson's theory is erf(σ0 √2/(E* h')) for an elastic half-space, with the rms slope h' and without a fit."
+    } else {
+        ""
+    };
+    format!(
+        "{bars}{theory} Penetration is counted from first touch. Linear axes begin at zero, but logarithmic ones do not."
+    )
+}
 
-    #[test]
-    fn means_are_over_seeds_under_equal_loads() {
-        let row = |seed, load: f64, area| Row {
-            scene: String::new(),
-            label: String::new(),
-            seed: Some(seed),
-            control_value: load,
-            control: "pressure".to_owned(),
-            status: "converged".to_owned(),
-            mean_pressure: load,
-            penetration: 2.0 * load,
-            area_fraction: area,
-            area_fraction_error: 0.0,
-            mean_gap: 1.0,
-            contact_stiffness: (seed == 1).then_some(3.0),
-            contact_conductance: Some(load),
-            conductance: None,
-            permeance_x: Some(4.0 - load),
-            permeance_y: None,
-            warnings: None,
-            wall_seconds: 0.0,
-        };
-        let rows = [row(1, 1.0, 0.1), row(1, 2.0, 0.2), row(2, 1.0, 0.3), row(2, 2.0, 0.6)];
-        let curves = SceneCurves::of(&rows);
-        assert_eq!(curves.seeds.len(), 2);
-        let areas: Vec<f64> = curves.mean.iter().map(|point| point.area).collect();
-        assert!((areas[0] - 0.2).abs() < 1e-15 && (areas[1] - 0.4).abs() < 1e-15, "{areas:?}");
-        assert_eq!((curves.mean[0].penetration, curves.mean[0].stiffness), (2.0, None));
-        // One seed does not have the second load, so there is no mean at that load.
-        let curves = SceneCurves::of(&[row(1, 1.0, 0.1), row(1, 2.0, 0.2), row(2, 1.0, 0.3)]);
-        assert_eq!((curves.seeds[0].len(), curves.seeds[1].len(), curves.mean.len()), (2, 1, 1));
+/// Means over the seeds with their standard errors; `None` if each scene has one seed.
+fn means(table: &SweepTable, name: &'static str) -> Option<Table> {
+    let scenes = table.scenes();
+    let several = scenes.len() > 1;
+    let all: Vec<AtLoad<'_>> = scenes.into_iter().flat_map(AtLoad::all).collect();
+    if all.iter().all(|at| at.rows.len() < 2) {
+        return None;
     }
+    let has = |quantity: &Quantity| all.iter().any(|at| at.mean(*quantity).is_some());
+    let shown: Vec<Quantity> = [PRESSURE].into_iter().chain(QUANTITIES).filter(has).collect();
+    let mut heads = if several { vec![name] } else { Vec::new() };
+    heads.push("surfaces");
+    heads.extend(shown.iter().map(|quantity| quantity.words));
+    let row = |at: &AtLoad<'_>| {
+        let text =
+            |quantity: &Quantity| at.mean(*quantity).map_or_else(|| "–".to_owned(), |mean: Mean| cell(quantity, mean));
+        let label = several.then(|| at.rows[0].label.clone());
+        let values = shown.iter().map(text);
+        label.into_iter().chain([at.rows.len().to_string()]).chain(values).collect()
+    };
+    Some(Table { heads, rows: all.iter().map(row).collect() })
+}
+
+/// The cells of a row.
+fn cells(row: &Row, several: bool) -> Vec<String> {
+    let of = |key: &str, unit| row.number(key).map_or_else(|| "–".to_owned(), |value| engineering(value, unit));
+    let [area, error] = ["area_fraction", "area_fraction_error"].map(|key| 100.0 * row.number(key).unwrap_or(0.0));
+    let mut cells = if several { vec![row.label.clone()] } else { Vec::new() };
+    cells.extend([
+        row.seed.map_or_else(|| "–".to_owned(), |seed| seed.to_string()),
+        of("mean_pressure", "Pa"),
+        of("penetration", "m"),
+        format!("{} ± {}", digits(area, 4), digits(error, 1)),
+        of("mean_gap", "m"),
+        row.number("contact_stiffness").map_or_else(|| "infinite".to_owned(), |value| engineering(value, "Pa/m")),
+        row.status.replace('_', " "),
+    ]);
+    cells
 }

@@ -5,7 +5,8 @@ use serde::Serialize;
 use super::page::Page;
 
 const FRAME: &str = include_str!("../../assets/report/page.html");
-const STYLE: &str = include_str!("../../assets/report/page.css");
+const STYLE: &str =
+    concat!(include_str!("../../assets/report/page.css"), include_str!("../../assets/report/sweep.css"));
 
 /// The script. Its parts are in the order in which they need each other.
 const SCRIPT: &str = concat!(

@@ -13,6 +13,7 @@ mod curves;
 mod document;
 mod embedded;
 mod flow_picture;
+mod frames;
 mod kappa;
 mod mean;
 mod page;
@@ -28,6 +29,7 @@ use std::path::Path;
 pub(crate) use self::command::{flags, quoted};
 
 use self::args::ReportArgs;
+use crate::curves::folder::no_table;
 use crate::error::CliError;
 use crate::files::names::SUMMARY_FILE;
 use crate::files::result::no_folder;
@@ -58,10 +60,7 @@ fn html(folder: &Path, quiet: bool) -> Result<String, CliError> {
     let settings = settings_in(folder);
     if !folder.join(TABLE_FILE).is_file() {
         return match settings {
-            Some(_) => Err(CliError::in_file(
-                folder,
-                format_args!("this sweep has no {TABLE_FILE} yet; finish it with --resume"),
-            )),
+            Some(_) => Err(no_table(folder)),
             None if folder.join(SUMMARY_FILE).exists() => Ok(document::html(&contact::page(folder)?)),
             None => {
                 Err(CliError::in_file(folder, "not a result; give the --out folder of a solve, a sweep or a study"))
@@ -70,7 +69,7 @@ fn html(folder: &Path, quiet: bool) -> Result<String, CliError> {
     }
     match settings.as_ref() {
         Some(settings) if !settings["ensemble"].is_null() => Ok(document::html(&mean::page(folder, settings)?)),
-        settings => Ok(document::html(&curves::page(folder, settings)?)),
+        _ => Ok(document::html(&curves::page(folder)?)),
     }
 }
 

@@ -101,7 +101,7 @@ impl StudyRecord {
     }
 
     /// A table for each load.
-    pub(super) fn text(&self) -> String {
+    pub(crate) fn text(&self) -> String {
         let titles = ["as prepared", "mesh bar", "treatment_low", "treatment_high"];
         let titles = format!("  {:<24}{:<14}{:<14}{:<16}{}\n", "result", titles[0], titles[1], titles[2], titles[3]);
         let table = |load: &LoadRanges| {

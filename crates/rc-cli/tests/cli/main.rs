@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod bad_input;
+mod curves;
 mod export;
 mod guide;
 mod hardness;

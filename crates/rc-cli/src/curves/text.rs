@@ -1,0 +1,126 @@
+//! `rc inspect` of a sweep: means over its seeds as text, JSON and `means.csv`.
+
+use std::path::Path;
+
+use rc_core::quantity::engineering;
+use rc_sweep::files::{self, write_synced};
+use rc_sweep::{Cells, to_json};
+use serde_json::{Value, json};
+
+use super::columns::{PRESSURE, QUANTITIES, Quantity, bar_of, is_result, number, unit_of};
+use super::means::{AtLoad, Mean};
+use super::table::{Row, SweepTable};
+use crate::error::CliError;
+use crate::study::record::words;
+
+/// File of the means in the folder of `--out`.
+const MEANS_FILE: &str = "means.csv";
+
+/// The text about the sweep in `folder`, or its JSON. With `out`, the means are also written to this folder.
+///
+/// # Errors
+/// [`CliError`].
+pub(crate) fn of_sweep(folder: &Path, json: bool, out: Option<&Path>) -> Result<String, CliError> {
+    let table = SweepTable::read(folder)?;
+    let records = records(&table);
+    let mut written = String::new();
+    if let Some(out) = out {
+        files::check_folder(out)?;
+        let path = out.join(MEANS_FILE);
+        files::write_file(&path, |path| write_synced(path, csv(&records).as_bytes()))?;
+        written = format!("\nwritten to {}\n", path.display());
+    }
+    if json {
+        return Ok(to_json(&json!({ "control": table.rows[0].control, "means": records })));
+    }
+    Ok(table.scenes().into_iter().map(scene).collect::<String>() + &written)
+}
+
+/// The means of all numbers that are results, a record for each scene and load, with the columns of `means.csv`.
+fn records(table: &SweepTable) -> Vec<Cells> {
+    let scenes = table.scenes();
+    let several = scenes.len() > 1;
+    let has = |key: &&String| table.rows.iter().any(|row| number(&row.cells, key).is_some());
+    let keys: Vec<&String> = table.rows[0].cells.keys().filter(|key| is_result(key)).filter(has).collect();
+    let record = |at: &AtLoad<'_>| {
+        let mut cells = Cells::new();
+        if several {
+            cells.insert("scene".to_owned(), at.rows[0].scene.clone().into());
+        }
+        cells.insert("load".to_owned(), at.load.into());
+        cells.insert("seeds".to_owned(), at.rows.len().into());
+        for key in &keys {
+            let value = |row: &Row| Some([number(&row.cells, key)?, bar_of(&row.cells, key).unwrap_or(0.0)]);
+            let mean = at.mean_of(value);
+            cells.insert((*key).clone(), json!(mean.map(|mean| mean.value)));
+            cells.insert(format!("{key}_standard_error"), json!(mean.and_then(|mean| mean.standard_error)));
+        }
+        cells
+    };
+    scenes.iter().flat_map(|rows| AtLoad::all(rows)).map(|at| record(&at)).collect()
+}
+
+fn csv(records: &[Cells]) -> String {
+    let cell = |value: &Value| match value {
+        Value::Null => String::new(),
+        Value::String(text) if text.contains([',', '"', '\n']) => format!("\"{}\"", text.replace('"', "\"\"")),
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    };
+    let heads: Vec<String> = records.first().map(|record| record.keys().cloned().collect()).unwrap_or_default();
+    let lines = records.iter().map(|record| record.values().map(cell).collect::<Vec<_>>().join(","));
+    std::iter::once(heads.join(",")).chain(lines).fold(String::new(), |text, line| text + &line + "\n")
+}
+
+/// The table of a scene: a line for each load.
+fn scene(rows: &[Row]) -> String {
+    let loads = AtLoad::all(rows);
+    let has = |quantity: &&Quantity| loads.iter().any(|at| at.mean(**quantity).is_some());
+    let shown: Vec<&Quantity> = QUANTITIES.iter().filter(has).collect();
+    let control = if rows[0].control == "penetration" { "penetration" } else { PRESSURE.key() };
+    let unit = unit_of(control);
+    let mut lines = vec![vec![control.replace('_', " "), "seeds".to_owned()]];
+    let others = shown.iter().filter(|quantity| quantity.key() != control);
+    let others: Vec<&Quantity> =
+        (control != PRESSURE.key()).then_some(&PRESSURE).into_iter().chain(others.copied()).collect();
+    lines[0].extend(others.iter().map(|quantity| head(quantity).to_owned()));
+    for at in &loads {
+        let mut line = vec![engineering(at.load, unit), at.rows.len().to_string()];
+        line.extend(
+            others.iter().map(|quantity| at.mean(**quantity).map_or_else(|| "-".to_owned(), |m| cell(quantity, m))),
+        );
+        lines.push(line);
+    }
+    let label = if rows[0].label.is_empty() { String::new() } else { format!("{}\n", rows[0].label) };
+    label + &aligned(&lines) + "\n"
+}
+
+fn head(quantity: &Quantity) -> &'static str {
+    quantity.words.split(',').next().unwrap_or_default()
+}
+
+/// A mean with its standard error, such as `15.1 µm ± 0.2 µm`.
+pub(crate) fn cell(quantity: &Quantity, mean: Mean) -> String {
+    let of = |value| words(value, quantity.unit);
+    mean.standard_error
+        .map_or_else(|| of(mean.value), |error| format!("{} ± {}", of(mean.value), rounded(error, quantity.unit)))
+}
+
+/// An error with two digits.
+fn rounded(error: f64, unit: &'static str) -> String {
+    let two = format!("{error:.1e}").parse().unwrap_or(error);
+    words(two, unit)
+}
+
+/// Lines of cells in columns as wide as their longest cell.
+pub(crate) fn aligned(lines: &[Vec<String>]) -> String {
+    let n = lines.iter().map(Vec::len).max().unwrap_or(0);
+    let length = |text: &String| text.chars().count();
+    let width = |i: usize| lines.iter().filter_map(|line| line.get(i)).map(length).max().unwrap_or(0) + 2;
+    let widths: Vec<usize> = (0..n).map(width).collect();
+    let line = |cells: &Vec<String>| {
+        let padded = cells.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+        format!("  {}\n", padded.collect::<String>().trim_end())
+    };
+    lines.iter().map(line).collect()
+}
