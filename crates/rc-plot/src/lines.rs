@@ -86,8 +86,8 @@ pub fn draw_lines_on<B: DrawingBackend>(
     let mut chart = builder(area, plot, font);
     let (x, y, corner) = (plot.x.0..plot.x.1, plot.y.0..plot.y.1, emptiest_corner(plot, log));
     let fail = PictureError::new;
-    let marks = |(low, high): (f64, f64)| log_marks(low, high);
-    let (x_marks, y_marks) = (marks(plot.x), marks(plot.y));
+    let marks = |(low, high), is_log: bool| if is_log { log_marks(low, high) } else { Vec::new() };
+    let (x_marks, y_marks) = (marks(plot.x, log.x), marks(plot.y, log.y));
     match (log.x, log.y) {
         (false, false) => draw_on(chart.build_cartesian_2d(x, y).map_err(fail)?, plot, font, corner),
         (true, false) => draw_on(

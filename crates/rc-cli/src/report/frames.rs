@@ -92,7 +92,7 @@ fn size(n: usize) -> (usize, usize) {
 }
 
 /// Every `every`-th row, and the last.
-fn taken<'a, T>(rows: &'a [T], every: usize) -> impl Iterator<Item = &'a T> {
+fn taken<T>(rows: &[T], every: usize) -> impl Iterator<Item = &T> {
     let last = rows.len().saturating_sub(1);
     rows.iter().enumerate().filter(move |(i, _)| (last - i).is_multiple_of(every)).map(|(_, row)| row)
 }
