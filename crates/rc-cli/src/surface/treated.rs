@@ -96,7 +96,9 @@ pub(crate) fn treat(read: MapRead, treatments: &[Treatment], budget: Budget) -> 
         // The cell of a profile is the square of its length.
         let square = |sides: Option<[f64; 2]>| sides.map(|[length, _]| [length; 2]);
         map.sides = square(map.sides);
-        effects.iter_mut().for_each(|effect| effect.sides = square(effect.sides));
+        for effect in &mut effects {
+            effect.sides = square(effect.sides);
+        }
     }
     let lay = doubts::mirrored(&map, treatments);
     let CellOfMap { cell, cell_y, .. } = CellOfMap::of(&path, &map, [None, None])?;
