@@ -33,7 +33,7 @@ Mask = Literal["use", "ignore"]
 
 
 #: Keys that are numbers along x and along y, and may be pairs.
-_PAIRS = frozenset({"grid", "output_grid", "--resample", "--crop", "--repeat"})
+_PAIRS = frozenset({"grid", "output_grid", "resample", "--resample", "--crop", "--repeat"})
 
 
 def plain(keys: Mapping[str, Any]) -> dict[str, Any]:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import roughcontact as rc
+from roughcontact._keys import plain
 
 CELL = {"cell": 1e-2, "cell_y": 7.5e-3}
 
@@ -47,3 +48,7 @@ def test_a_study_takes_the_flags_of_a_treatment_and_refuses_bad_input(scan):
         rc.study(scan, pressures=[1e6], **CELL)
     with pytest.raises(ValueError, match="strict"):
         rc.study(scan, pressures=[1e6], **CELL, e_star=1e9, despike=False, strict=True)
+
+
+def test_a_pair_of_numbers_of_points_is_a_grid():
+    assert plain({"resample": (512, 256)}) == {"resample": "512x256"}

@@ -17,6 +17,16 @@ pub enum LeakageError {
         /// Value of the gap.
         value: f64,
     },
+    /// A patch with its mirror images has more elements than a grid.
+    #[error(
+        "the flow through a patch of {grid} elements needs twice as many per side, and a grid has at most {max}; give at most {half} per side",
+        max = Grid::MAX_SIDE,
+        half = Grid::MAX_SIDE / 2
+    )]
+    Images {
+        /// Elements of the patch.
+        grid: Grid,
+    },
     /// The bounds of the permeance, or the flow through sections, still differ after the most iterations.
     #[error(
         "the flow along {axis} on {grid} elements did not converge in {iterations} iterations: its bounds differ by {error:.1e} of the \

@@ -48,4 +48,4 @@ pub use error::LeakageError;
 pub use flow::{Flow, FlowInfo, Leakage, LeakageParams, leakage, percolates};
 pub use flux::Flux;
 pub use network::Axis;
-pub use patch::{leakage_of_patch, patch_percolates};
+pub use patch::{images, leakage_of_patch, patch_percolates};

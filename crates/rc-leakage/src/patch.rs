@@ -15,9 +15,9 @@ use crate::flux::Flux;
 /// is that of the cell of four images, which is solved. *Cost*: that of four times the elements.
 ///
 /// # Errors
-/// As [`leakage`].
+/// As [`leakage`], and as [`images`].
 pub fn leakage_of_patch(gap: &Field, params: &LeakageParams) -> Result<Leakage, LeakageError> {
-    let Leakage { flows, flux } = leakage(&mirrored(gap), params)?;
+    let Leakage { flows, flux } = leakage(&mirrored(gap)?, params)?;
     Ok(Leakage {
         flows: flows.map(|flow| of_patch(flow, gap.grid())),
         flux: flux.map(|flux| quarter(&flux, gap.grid())),
@@ -25,22 +25,32 @@ pub fn leakage_of_patch(gap: &Field, params: &LeakageParams) -> Result<Leakage, 
 }
 
 /// Whether the film in `gap` (0 in contact) of a patch connects its borders across x, and those across y.
-#[must_use]
-pub fn patch_percolates(gap: &Field) -> [bool; 2] {
-    percolates(&mirrored(gap))
+///
+/// # Errors
+/// As [`images`].
+pub fn patch_percolates(gap: &Field) -> Result<[bool; 2], LeakageError> {
+    Ok(percolates(&mirrored(gap)?))
+}
+
+/// The grid of a patch of `grid` elements beside its mirror images.
+///
+/// # Errors
+/// [`LeakageError::Images`] when a side of the patch has more than half of [`Grid::MAX_SIDE`].
+pub fn images(grid: Grid) -> Result<Grid, LeakageError> {
+    Grid::in_cell(2 * grid.nx(), 2 * grid.ny(), grid.cell_ratio()).map_err(|_| LeakageError::Images { grid })
 }
 
 /// The patch beside its mirror images, in units of twice its side.
-fn mirrored(gap: &Field) -> Field {
+fn mirrored(gap: &Field) -> Result<Field, LeakageError> {
     let grid = gap.grid();
-    let (nx, ny) = (grid.nx(), grid.ny());
-    let image = Grid::in_cell(2 * nx, 2 * ny, grid.cell_ratio()).expect("twice the sides of a grid");
+    let ny = grid.ny();
+    let image = images(grid)?;
     let mut values = Vec::with_capacity(image.len());
     for iy in (0..ny).chain((0..ny).rev()) {
         let row = gap.row(iy).iter().map(|gap| 0.5 * gap);
         values.extend(row.clone().chain(row.rev()));
     }
-    Field::new(image, values).expect("a value for each element")
+    Ok(Field::new(image, values).expect("a value for each element"))
 }
 
 /// The flow of four images, in units of the side of the patch.
@@ -110,6 +120,14 @@ mod tests {
         assert!(cell.flows.iter().all(|flow| flow.percolates));
         let patch = leakage_of_patch(&gap, &LeakageParams::default()).expect("a flow");
         assert!(patch.flows.iter().all(|flow| !flow.percolates));
-        assert_eq!((percolates(&gap), patch_percolates(&gap)), ([true; 2], [false; 2]));
+        assert_eq!((percolates(&gap), patch_percolates(&gap)), ([true; 2], Ok([false; 2])));
+    }
+
+    #[test]
+    fn a_patch_whose_images_are_no_grid_is_refused() {
+        let gap = Field::zeros(Grid::in_cell(Grid::MAX_SIDE, 1, 1e-4).expect("a grid"));
+        let refused = Err(LeakageError::Images { grid: gap.grid() });
+        assert_eq!(patch_percolates(&gap), refused);
+        assert_eq!(leakage_of_patch(&gap, &LeakageParams::default()).map(|_| [false; 2]), refused);
     }
 }

@@ -35,7 +35,7 @@ pub(crate) struct ArealRow {
     pub(crate) vvc: f64,
     /// Void volume of the valleys, below 80 %.
     pub(crate) vvv: f64,
-    /// Autocorrelation length; `None` if points are missing or nothing decays on half of the map.
+    /// Autocorrelation length; `None` if points are missing, for one row or column, or if nothing decays on half of the map.
     pub(crate) sal: Option<f64>,
     /// Texture aspect ratio; `None` if it is not known, or only known to be below `str_below`.
     pub(crate) str: Option<f64>,

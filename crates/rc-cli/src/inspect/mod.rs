@@ -226,8 +226,9 @@ pub(crate) fn of_surface(path: &Path, over: Scene) -> Result<Inspected, CliError
     let scene = resolve::layers(Some(path), over)?;
     resolve::check_size(&scene.surface)?;
     let setup = resolve::surface(scene.surface)?;
-    let surface = setup.load()?;
-    Budget::new(scene.run.memory_limit).check_grid("the surface", surface.grid)?;
+    let budget = Budget::new(scene.run.memory_limit);
+    let surface = setup.load_within(budget)?;
+    budget.check_grid("the surface", surface.grid)?;
     let heights = surface.heights()?.into_owned();
     let record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments(&heights));
     let warnings = [surface.warnings, record.shape().warnings()].concat();

@@ -138,7 +138,10 @@ fn without_holes(heights: &[f64]) -> Vec<f64> {
     (0..heights.len()).map(value).collect()
 }
 
-/// The roughness profile, between half a λc from both ends, and its number of sections.
+/// The roughness profile from half a λc on, as many whole sections of λc as there are up to half a λc before its end,
+/// and their number.
+///
+/// Sections end at points, so each is λc long to a step.
 fn roughness(
     heights: &[f64],
     spacing: f64,
@@ -169,9 +172,11 @@ fn roughness(
     let waviness = gaussian_mean_line(&smooth, lambda / spacing);
     let end = (0.5 * lambda / spacing * (1.0 - 1e-9)).ceil() as usize;
     let kept: Vec<f64> = smooth.iter().zip(&waviness).map(|(height, line)| height - line).collect();
-    // A whole number of sections may have a rounding error.
-    let sections = ((kept.len() - 2 * end) as f64 * spacing / lambda * (1.0 + 1e-9)) as usize;
-    Ok((kept[end..kept.len() - end].to_vec(), sections.max(1)))
+    let left = &kept[end..kept.len() - end];
+    // A whole number of sections may have a rounding error. A rest after the last one is not evaluated.
+    let sections = ((left.len() as f64 * spacing / lambda * (1.0 + 1e-9)) as usize).max(1);
+    let points = (sections as f64 * lambda / spacing).round() as usize;
+    Ok((left[..points.min(left.len())].to_vec(), sections))
 }
 
 impl ProfileRecord {
@@ -277,8 +282,15 @@ impl ProfileRecord {
         let names = [("λs", self.lambda_s), ("λc", self.lambda_c)];
         let given: Vec<String> =
             names.iter().filter_map(|(name, at)| at.map(|at| format!("{name} {}", engineering(at, "m")))).collect();
-        let sections =
-            if self.lambda_c.is_some() { format!(", {} sections of λc", self.sections) } else { String::new() };
+        let sections = self.lambda_c.map_or_else(String::new, |lambda| {
+            let rest = self.length - lambda - self.evaluation_length;
+            let after = format!(" and not on the {} after them", engineering(rest, "m"));
+            format!(
+                ", {} sections of λc{}",
+                self.sections,
+                if rest > 3.0 * self.spacing { after } else { String::new() }
+            )
+        });
         (!given.is_empty()).then(|| {
             format!(
                 "Gaussian (ISO 16610-21), {}; evaluated on {}{sections}, without half a cut-off at both ends",

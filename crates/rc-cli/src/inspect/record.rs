@@ -62,7 +62,7 @@ pub(crate) struct SurfaceRecord {
     pub(crate) ends: EndsRow,
     /// The power law in the spectrum, if it has one.
     pub(crate) hurst_fit: Option<HurstRow>,
-    /// Radially averaged power spectral density; empty if points are missing.
+    /// Radially averaged power spectral density; empty if points are missing, or for one row or column.
     pub(crate) spectrum: Vec<SpectrumRow>,
     /// Measured map before its treatments and after each of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -207,27 +207,34 @@ impl SpectrumRow {
 impl SurfaceRecord {
     /// The record of `heights` (in λ) in a cell of side `side` (m).
     ///
-    /// `moments` are exact ones if they are known, else [`rc_fractal::moments_of_grid`].
+    /// `moments` are exact ones if they are known, else [`rc_fractal::moments_of_grid`]. A map of one row or column has no
+    /// texture and no spectrum of an area.
     #[must_use]
     pub(crate) fn of(heights: &Field, side: f64, moments: Moments) -> Self {
         let border = BorderStep::of(heights);
-        let windowed = !border.is_periodic();
-        let under_window = if windowed { Cow::Owned(rc_heights::hann(heights)) } else { Cow::Borrowed(heights) };
-        let rings = radial_spectrum(&under_window);
         let measured = Self::of_measured(heights, side);
-        let fit = fit_hurst(&rings, &Measured::on(heights.grid(), windowed));
-        Self {
+        let with_moments = Self {
             rms_height: moments.rms_height * side,
             rms_slope: moments.rms_slope,
             rms_curvature: Some(moments.rms_curvature / side),
             nayak: Some(moments.nayak),
             border_step: Some(border.ratio()),
+            ..measured
+        };
+        if heights.grid().nx().min(heights.grid().ny()) == 1 {
+            return with_moments;
+        }
+        let windowed = !border.is_periodic();
+        let under_window = if windowed { Cow::Owned(rc_heights::hann(heights)) } else { Cow::Borrowed(heights) };
+        let rings = radial_spectrum(&under_window);
+        let fit = fit_hurst(&rings, &Measured::on(heights.grid(), windowed));
+        Self {
             windowed,
             ends: fit.map_or_else(EndsRow::default, |fit| EndsRow::new(&fit, side)),
             hurst_fit: fit.map(|fit| HurstRow::new(fit, side)),
             spectrum: rings.iter().map(|ring| SpectrumRow::new(ring, side)).collect(),
-            areal: measured.areal.clone().with_texture(heights, &under_window, side),
-            ..measured
+            areal: with_moments.areal.clone().with_texture(heights, &under_window, side),
+            ..with_moments
         }
     }
 

@@ -138,11 +138,13 @@ pub(crate) fn parameter_lines(s: &SurfaceRecord) -> Vec<(&'static str, String)> 
 fn spectrum_lines(s: &SurfaceRecord) -> String {
     let Some(border_step) = s.border_step else { return aligned(&[("spectrum", not_known())]) };
     let state = if s.windowed {
-        "not periodic (rc surface --periodic), so the spectrum is under a Hann window"
+        ": not periodic (rc surface --periodic), so the spectrum is under a Hann window"
+    } else if s.spectrum.is_empty() {
+        ""
     } else {
-        "periodic"
+        ": periodic"
     };
-    let border = format!("{} times the step between neighbours: {state}", digits(border_step, 3));
+    let border = format!("{} times the step between neighbours{state}", digits(border_step, 3));
     let law = match &s.hurst_fit {
         None => "no part of the spectrum follows a power law over a factor of 4 in wave number".to_owned(),
         Some(fit) => format!(
@@ -159,6 +161,9 @@ fn spectrum_lines(s: &SurfaceRecord) -> String {
             digits(fit.deviation, 2)
         ),
     };
+    if s.spectrum.is_empty() {
+        return aligned(&[("border step", border)]);
+    }
     let mut lines = vec![("border step", border), ("Hurst exponent", law)];
     if s.hurst_fit.is_some() {
         lines.extend(end_lines(&s.ends));

@@ -24,6 +24,7 @@ use crate::error::CliError;
 use crate::files::names::HEIGHTS_FILE;
 use crate::warnings;
 use rc_sweep::Warning;
+use rc_sweep::memory::Budget;
 
 /// A checked surface, before it is generated or read.
 #[derive(Clone, Debug)]
@@ -208,11 +209,23 @@ impl SurfaceSetup {
 
     /// Reads the map or generates the random surface.
     ///
-    /// Heights of a sum of waves are not evaluated yet.
+    /// Heights of a sum of waves are not evaluated yet. Those that are evaluated must fit into the memory of the machine.
     ///
     /// # Errors
-    /// [`CliError::Input`] when the file is not a height map, is on another grid than the scene says, or is flat.
+    /// [`CliError::Input`] when the file is not a height map, is on another grid than the scene says, or is flat, and
+    /// when the heights do not fit.
     pub fn load(&self) -> Result<LoadedSurface, CliError> {
+        self.load_within(Budget::new(None))
+    }
+
+    /// As [`SurfaceSetup::load`], with the memory of `budget`.
+    ///
+    /// # Errors
+    /// As [`SurfaceSetup::load`].
+    pub(crate) fn load_within(&self, budget: Budget) -> Result<LoadedSurface, CliError> {
+        if let Some((what, grid)) = self.evaluated() {
+            budget.check_grid(what, grid)?;
+        }
         match &self.source {
             Source::File { path, expected, params, scales } => {
                 let held = self.held.lock().unwrap_or_else(PoisonError::into_inner).take();
@@ -250,6 +263,18 @@ impl SurfaceSetup {
                 Ok(surface)
             }
             Source::Shape { grid } => self.generated(None, *grid),
+        }
+    }
+
+    /// What has heights on a whole grid once it is loaded, and that grid. That of a file is its own.
+    fn evaluated(&self) -> Option<(&'static str, Grid)> {
+        match &self.source {
+            Source::Twin { grid, .. } => Some(("the twin", *grid)),
+            Source::File { .. } => None,
+            Source::Random { grid, .. }
+            | Source::Waves { grid, .. }
+            | Source::Spectrum { grid, .. }
+            | Source::Shape { grid } => self.keys.add.as_ref().map(|_| ("the sum of both bodies", *grid)),
         }
     }
 

@@ -54,7 +54,7 @@ impl Job {
     /// # Errors
     /// [`CliError::Input`].
     pub(super) fn dry_run(&self) -> Result<(), CliError> {
-        let (kernel, surface) = (self.scene.contact.kernel()?, self.scene.surface.load()?);
+        let (kernel, surface) = (self.scene.contact.kernel()?, self.scene.surface.load_within(self.budget())?);
         let problem = self.scene.problem(&surface, &*kernel, self.budget());
         together(self.ranks(), self.doubt(&problem.warnings()))?;
         dry_run::run(&problem, self.threads, &self.run)
@@ -93,7 +93,7 @@ impl Job {
         let progress = self.progress();
         progress.say("heights");
         let kernel = self.scene.contact.kernel()?;
-        let surface = together(ranks, self.scene.surface.load())?;
+        let surface = together(ranks, self.scene.surface.load_within(self.budget()))?;
         let problem = self.scene.problem(&surface, &*kernel, self.budget());
         progress.hidden(|| together(ranks, self.doubt(&problem.warnings())))?;
         let solved = self.scene.solve(problem, self.started, &progress)?;

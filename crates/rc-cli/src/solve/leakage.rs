@@ -45,9 +45,13 @@ impl SolvedFlow {
 ///
 /// Both are on the same number of elements.
 pub(crate) fn memory_factor(keys: &ContactKeys) -> f64 {
-    // A patch is solved beside three mirror images.
-    let images = if keys.boundary == Some(Boundary::Free) { 4.0 } else { 1.0 };
+    let images = images(keys.boundary.unwrap_or_default());
     if keys.leakage { 1.0 + images * rc_leakage::BYTES_PER_ELEMENT / UNIFORM_BYTES_PER_ELEMENT as f64 } else { 1.0 }
+}
+
+/// Ratio of the elements of a flow to those of its contact. A patch is solved beside three mirror images.
+pub(super) fn images(boundary: Boundary) -> f64 {
+    if boundary == Boundary::Free { 4.0 } else { 1.0 }
 }
 
 /// The gap with zero in contact. Small negative values of the solver are rounding and become zero.

@@ -4,13 +4,13 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use rc_core::{Kernel, Observer};
+use rc_core::{Boundary, Kernel, Observer};
 use rc_solver::{ContactProblem, Cost, Plan, Solution, SolveError, SolveParams};
 use rc_sweep::memory::Budget;
 use rc_sweep::{RowProblem, SolvedRow, Summary, Warning};
 
 use super::failure::Failure;
-use super::leakage::SolvedFlow;
+use super::leakage::{self, SolvedFlow};
 use super::messages;
 use super::result_files::{MapHeights, ResultFiles};
 use crate::error::CliError;
@@ -139,12 +139,17 @@ impl<'a> ProblemSetup<'a> {
         if !self.contact.keys.leakage {
             return cost;
         }
-        let elements = self.surface.grid.len() as f64;
+        let elements = self.elements_of_flow();
         Cost {
             bytes: cost.bytes.map(|bytes| bytes + rc_leakage::BYTES_PER_ELEMENT * elements),
             cpu_seconds: cost.cpu_seconds.map(|seconds| seconds + rc_leakage::SECONDS_PER_ELEMENT * elements),
             ..cost
         }
+    }
+
+    /// Number of elements that the flow is solved on.
+    fn elements_of_flow(&self) -> f64 {
+        leakage::images(self.contact.boundary) * self.surface.grid.len() as f64
     }
 
     /// Refuses a flow that does not fit into memory.
@@ -153,7 +158,7 @@ impl<'a> ProblemSetup<'a> {
             return Ok(());
         }
         let what = format!("leakage on {} elements, with the contact,", self.surface.grid);
-        let flow = rc_leakage::BYTES_PER_ELEMENT * self.surface.grid.len() as f64;
+        let flow = rc_leakage::BYTES_PER_ELEMENT * self.elements_of_flow();
         Ok(self.budget.check(&what, self.cost(plan).bytes.unwrap_or(flow), |_| String::new())?)
     }
 
@@ -161,6 +166,9 @@ impl<'a> ProblemSetup<'a> {
     fn check_grid(&self) -> Result<(), CliError> {
         let ContactSetup { layer, kernel, units, .. } = self.contact;
         resolve::check_thickness(*layer, *kernel, self.surface.grid, units.cell().side())?;
+        if self.contact.keys.leakage && self.contact.boundary == Boundary::Free {
+            rc_leakage::images(self.surface.grid).map_err(|cause| CliError::input(format_args!("leakage: {cause}")))?;
+        }
         self.contact.keys.output_grid.map_or(Ok(()), |spec| check_factor(self.surface.grid, spec))
     }
 

@@ -9,6 +9,7 @@ use super::rows::StudyRows;
 use super::variants::Variant;
 use crate::error::CliError;
 use crate::scene::keys::ContactKeys;
+use crate::solve::memory_factor;
 use crate::solve::solved::ProblemSetup;
 use crate::surface::treated::{self, MapRead, Prepared};
 use crate::warnings::shown;
@@ -63,9 +64,15 @@ impl Distinct {
         Ok(found)
     }
 
-    /// Number of elements of the largest map.
-    pub(super) fn max_elements(&self) -> usize {
-        self.identities.iter().map(|(_, [nx, ny], ..)| nx * ny).max().unwrap_or(0)
+    /// Number of elements of the largest contact under the keys `contact`.
+    ///
+    /// With a flow, it is the number of elements that take the same memory without the flow.
+    pub(super) fn max_elements(&self, contact: &ContactKeys) -> f64 {
+        let elements = |(_, [nx, ny], _, boundary): &Identity| {
+            let keys = ContactKeys { boundary: Some(*boundary), ..contact.clone() };
+            (nx * ny) as f64 * memory_factor(&keys)
+        };
+        self.identities.iter().map(elements).fold(0.0, f64::max)
     }
 
     fn add(&mut self, variant: Variant, prepared: &Prepared) -> Result<(), CliError> {

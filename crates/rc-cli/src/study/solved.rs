@@ -76,7 +76,7 @@ struct Study {
     rows: StudyRows,
     distinct: Distinct,
     pressures: Vec<f64>,
-    /// Number of elements of the largest treated map.
+    /// Number of elements of the largest treated map, with those that a flow stands for.
     max_elements: f64,
     source: MapOrigin,
     command: String,
@@ -182,7 +182,7 @@ impl Study {
         let common = Common { read: &read, contact: &contact, pressures: &pressures, budget, strict: run.strict };
         let distinct = Distinct::of(variants, &common)?;
         let pressure = pressures.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let max_elements = distinct.max_elements() as f64;
+        let max_elements = distinct.max_elements(&contact);
         let rows = StudyRows::new(read, distinct.solved.clone(), contact, budget, Pictures { folder, pressure });
         Ok(Self { rows, distinct, pressures, max_elements, source, command })
     }

@@ -42,7 +42,7 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
         files::check_folder(if is_map(target) { target.parent().unwrap_or(Path::new("")) } else { target })?;
     }
     let prepared = if treatments.is_empty() {
-        untreated(scene.surface)?
+        untreated(scene.surface, budget)?
     } else {
         treated::treat(treated::read(scene.surface)?, &treatments, budget)?
     };
@@ -70,10 +70,10 @@ fn write(prepared: &Prepared, run: &RunKeys) -> Result<(), CliError> {
     }
 }
 
-fn untreated(keys: SurfaceKeys) -> Result<Prepared, CliError> {
+fn untreated(keys: SurfaceKeys, budget: Budget) -> Result<Prepared, CliError> {
     resolve::check_size(&keys)?;
     let setup = resolve::surface(keys)?;
-    let mut surface = setup.load()?;
+    let mut surface = setup.load_within(budget)?;
     let (warnings, notes) = (std::mem::take(&mut surface.warnings), std::mem::take(&mut surface.notes));
     Ok(Prepared { surface, cell: setup.cell, effects: Vec::new(), warnings, notes })
 }

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use rc_core::PeriodicCell;
-use rc_heights::{Effect, HeightMap, TreatError, Treatment};
+use rc_core::{Grid, PeriodicCell};
+use rc_heights::{Crop, Effect, HeightMap, TreatError, Treatment};
 use rc_sweep::memory::Budget;
 use rc_sweep::{Warning, WarningCode};
 
@@ -66,7 +66,8 @@ pub(crate) fn read(keys: SurfaceKeys) -> Result<MapRead, CliError> {
     };
     resolve::check_size(&keys)?;
     let mut map = heights::read(&path, &keys.read_params(), keys.scales())?;
-    let CellOfMap { cell, cell_y, assumed } = CellOfMap::of(&path, &map, [keys.cell, keys.cell_y])?;
+    let given = [keys.cell, if keys.line { keys.cell } else { keys.cell_y }];
+    let CellOfMap { cell, cell_y, assumed } = CellOfMap::of(&path, &map, given)?;
     let mut warnings = doubts::of_map(&map);
     warnings.extend(doubts::assumed(&assumed));
     let notes = map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
@@ -81,15 +82,24 @@ pub(crate) fn read(keys: SurfaceKeys) -> Result<MapRead, CliError> {
 /// [`CliError::Input`] when a treatment is not possible, or leaves missing points.
 pub(crate) fn treat(read: MapRead, treatments: &[Treatment], budget: Budget) -> Result<Prepared, CliError> {
     let MapRead { map, path, keys, warnings, notes } = read;
+    let treatments = &if keys.line { of_profile(treatments)? } else { treatments.to_vec() };
     let grids = rc_heights::grids_after(&map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
     for (grid, treatment) in grids.into_iter().zip(treatments) {
         budget.check_grid(&format!("the map after {treatment}"), grid)?;
     }
     let mut effects = vec![Effect::of(&map, "as read")];
-    let (map, after) = rc_heights::apply(map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
+    let (mut map, after) = rc_heights::apply(map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
     let mut origin = origin::of(&path, keys.channel.as_deref());
     origin.treatments.extend(after.iter().map(|effect| effect.treatment.clone()));
     effects.extend(after);
+    if keys.line {
+        // The cell of a profile is the square of its length.
+        let square = |sides: Option<[f64; 2]>| sides.map(|[length, _]| [length; 2]);
+        map.sides = square(map.sides);
+        for effect in &mut effects {
+            effect.sides = square(effect.sides);
+        }
+    }
     let lay = doubts::mirrored(&map, treatments);
     let CellOfMap { cell, cell_y, .. } = CellOfMap::of(&path, &map, [None, None])?;
     // The scene of a folder has the grid of the map before its treatments.
@@ -104,6 +114,27 @@ pub(crate) fn treat(read: MapRead, treatments: &[Treatment], budget: Budget) -> 
     warnings.extend(doubts::of_record(&path));
     surface.origin = Some(origin);
     Ok(Prepared { surface, cell: setup.cell, effects, warnings, notes })
+}
+
+/// The treatments of a profile, which is a row. A number alone is that of its points.
+///
+/// # Errors
+/// [`CliError::Input`] for several rows.
+fn of_profile(treatments: &[Treatment]) -> Result<Vec<Treatment>, CliError> {
+    let several =
+        |key: &str, nx: usize| CliError::input(format_args!("{key}: a profile has one row; give {nx} or {nx}x1"));
+    let one = |treatment: &Treatment| match *treatment {
+        Treatment::Crop(Crop::Points { nx, ny, from }) if ny == nx || ny == 1 => {
+            Ok(Treatment::Crop(Crop::Points { nx, ny: 1, from }))
+        }
+        Treatment::Crop(Crop::Points { nx, .. }) => Err(several("crop", nx)),
+        Treatment::Resample(grid) if grid.ny() == grid.nx() || grid.ny() == 1 => {
+            Ok(Treatment::Resample(Grid::new(grid.nx(), 1).map_err(CliError::input)?))
+        }
+        Treatment::Resample(grid) => Err(several("resample", grid.nx())),
+        other => Ok(other),
+    };
+    treatments.iter().map(one).collect()
 }
 
 /// A map in metres after treatments that are checked, and the doubts that `rc surface` has about it.

@@ -72,7 +72,7 @@ pub(super) fn refuse_early(surfaces: &Surfaces) -> Result<(), CliError> {
         return Ok(());
     }
     for swept in surfaces.all() {
-        let surface = swept.setup.load()?;
+        let surface = swept.setup.load_within(Budget::new(surfaces.run.memory_limit))?;
         for contact in swept.contacts(surfaces.control()) {
             let contact = contact?;
             let kernel = contact.kernel()?;

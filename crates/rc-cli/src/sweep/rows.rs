@@ -1,5 +1,6 @@
 //! The rows of a sweep: their scenes and their results.
 
+use rc_sweep::memory::Budget;
 use rc_sweep::{Cells, RowError, RowResults, SolvedRow, Sweep, SweepRow};
 
 use super::problems::{RowScenes, SceneContact, SceneProblems};
@@ -11,7 +12,7 @@ use crate::scene::resolve::ContactSetup;
 
 impl RowScenes<SweepRow> for Surfaces {
     fn load(&self, row: &SweepRow) -> Result<LoadedSurface, CliError> {
-        self.surface(row).load()
+        self.surface(row).load_within(Budget::new(self.run.memory_limit))
     }
 
     fn contact(&self, row: &SweepRow) -> Result<ContactSetup, CliError> {

@@ -164,12 +164,12 @@ impl Search<'_> {
         let row = SweepRow { index: 0, surface: self.index, load };
         let mut contact = self.surfaces.contact_of(&row)?;
         contact.keys = ContactKeys { leakage: false, ..contact.keys };
+        let budget = Budget::new(self.surfaces.run.memory_limit);
         let surface = match self.heights.take() {
             Some(surface) => surface,
-            None => self.surfaces.surface(&row).load()?,
+            None => self.surfaces.surface(&row).load_within(budget)?,
         };
         let kernel = contact.kernel()?;
-        let budget = Budget::new(self.surfaces.run.memory_limit);
         let problem = ProblemSetup { surface: &surface, contact: &contact, kernel: &*kernel, budget };
         let SolvedParts { solution, failure, .. } = problem.solve(Instant::now(), &Silent)?.into_parts();
         if failure.is_some() {
@@ -178,7 +178,9 @@ impl Search<'_> {
         let gap = open_gap(&solution);
         let percolates = match contact.boundary {
             Boundary::Periodic => rc_leakage::percolates(&gap),
-            Boundary::Free => rc_leakage::patch_percolates(&gap),
+            Boundary::Free => {
+                rc_leakage::patch_percolates(&gap).map_err(|cause| CliError::input(format_args!("leakage: {cause}")))?
+            }
         };
         let pressure = contact.units.pascals(solution.info().mean_pressure);
         drop(solution);

@@ -245,8 +245,32 @@ fn profiles_of_instruments_are_like_texts_and_are_the_source() {
     assert_eq!(source["file"], "profile.nc");
     assert_eq!(source["treatments"], serde_json::json!(["surface with the spectrum of this profile, seed 4"]));
     assert_refused(&place.run(&["surface", "--heights", "profile.sur"]), "a profile, not a map");
+    // Heights of falling x are those of rising x in the reverse order.
+    place.write("falling.nc", netcdf(&heights.iter().rev().copied().collect::<Vec<_>>(), -0.5));
+    for file in ["profile.nc", "falling.nc"] {
+        assert_solved(&place.run(&[
+            "surface",
+            "--heights",
+            file,
+            "--line",
+            "--quiet",
+            "--out",
+            file.trim_end_matches(".nc"),
+        ]));
+    }
+    assert_eq!(place.bytes("profile/heights.npy"), place.bytes("falling/heights.npy"));
     place.write("short.sur", sur(&heights[..9], 0.5));
     assert_refused(&place.run(&["surface", "--like", "short.sur"]), "a profile of 9 points");
+}
+
+#[test]
+fn a_twin_larger_than_the_memory_is_refused_before_it_is_made() {
+    let place = Place::new();
+    assert_solved(&place.run(&["surface", "--waves", "8", "--grid", "64", "--cell", "64um", "--quiet", "--out", "s"]));
+    let twin = ["--like", "s", "--cell", "1"];
+    assert_refused(&place.run(&[&["surface"][..], &twin].concat()), "the twin on 1000000 x 1000000 elements");
+    let solve = [&["solve", "--pressure", "1e5"][..], &MATERIAL, &twin].concat();
+    assert_refused(&place.run(&solve), "the twin on 1000000 x 1000000 elements");
 }
 
 #[test]

@@ -63,6 +63,24 @@ fn half_of_a_wave_touches_in_every_file_of_the_profile() {
 }
 
 #[test]
+fn a_part_of_a_profile_is_a_profile() {
+    let place = Place::new();
+    place.write("wave.csv", lines("x (um),z (nm)\n", [1e-6, 1e-9]));
+    let treated = |args: &[&str]| place.run(&[&["surface", "--heights", "wave.csv", "--line"], args].concat());
+    for (args, side) in [(["--crop", "512x1"], 0.5e-3), (["--crop", "512"], 0.5e-3), (["--resample", "512"], 1e-3)] {
+        assert_solved(&treated(&[&args[..], &["--quiet", "--out", "part"]].concat()));
+        let record = place.json("part/surface.json");
+        assert_eq!(record["grid"], serde_json::json!([512, 1]), "{args:?}");
+        assert_close("side", number(&record, "cell"), side, 1e-9);
+        // One row has no texture and no spectrum of an area.
+        assert!(record["Sal"].is_null() && record["spectrum"] == serde_json::json!([]), "{record}");
+        let args = ["solve", "part", "--e-star", "1e9", "--pressure", "1e5", "--quiet", "--out", "solved"];
+        assert_solved(&place.run(&args));
+    }
+    assert_refused(&treated(&["--resample", "512x256"]), "resample: a profile has one row; give 512 or 512x1");
+}
+
+#[test]
 fn what_a_line_contact_has_not_is_refused() {
     let place = Place::new();
     place.write("wave.csv", lines("x (um),z (nm)\n", [1e-6, 1e-9]));
@@ -120,6 +138,13 @@ fn a_profile_has_the_parameters_of_the_standard_with_and_without_filters() {
     assert_eq!(fine["Pq"], plain["Pq"]);
     assert_close("evaluation length", number(&fine, "evaluation_length"), 8e-3, 1e-9);
     assert_eq!(fine["sections"], 40);
+    // Sections have the length λc, and a rest is not evaluated: 8.2 mm less λc have four, and 0.7 mm are left.
+    let long = inspect(&["--lambda-c", "1.5mm"]);
+    assert_close("evaluation length", number(&long, "evaluation_length"), 6e-3, 1e-9);
+    assert_eq!(long["sections"], 4);
+    let told = place.run(&["inspect", "waves.csv", "--lambda-c", "1.5mm"]);
+    let told = text(&told.stdout);
+    assert!(told.contains("evaluated on 6 mm, 4 sections of λc and not on the 700 µm after them"), "{told}");
     // λs of 80 µm takes the short wave away.
     let smooth = inspect(&["--lambda-s", "80um"]);
     let left = 0.5_f64.powf((0.08_f64 / 0.8).powi(2));

@@ -37,9 +37,14 @@ pub(super) fn channels<'a>(arrays: &Rc<Arrays>, group: &NcGroup) -> Channels<'a>
 
 /// The row of heights in one vector, at the equal steps of another.
 fn row(arrays: &Arrays, [x, z]: &[String; 2]) -> Result<HeightMap, FormatError> {
-    let (places, values) = (arrays.values(x, None)?, arrays.values(z, None)?);
+    let (places, mut values) = (arrays.values(x, None)?, arrays.values(z, None)?);
     let grid = Grid::new(values.len(), 1)?;
-    let step = axes::step("x", &places)?.abs();
+    let step = axes::step("x", &places)?;
+    // Heights of falling x are reversed, as rows of a map are.
+    if step < 0.0 {
+        values.reverse();
+    }
+    let step = step.abs();
     let unit = unit_name(arrays.variable(x)?);
     let sides = [step * values.len() as f64, step];
     let (sides, side_unit) = with_units(arrays.format, sides, &[unit.clone(), unit])?;

@@ -45,7 +45,7 @@ pub(super) fn channels<'a>(bytes: &[u8], format: Format, params: &ReadParams) ->
     let arrays = Rc::new(open(bytes, format, max_bytes)?);
     let mut listed = Vec::new();
     list(&arrays, arrays.root()?, "", &mut listed)?;
-    if listed.is_empty() && params.row_is_map {
+    if listed.is_empty() && (params.row_is_map || params.is_profile) {
         return netcdf_lines::channels(&arrays, arrays.root()?);
     }
     if listed.is_empty() {

@@ -6,6 +6,8 @@
 //!
 //! The least integer is `Dim2Min`, and all integers span `Dim2Range`.
 
+use std::collections::HashMap;
+
 use rc_core::Grid;
 
 use super::binary::Number;
@@ -91,11 +93,16 @@ fn listed(sections: &[Section]) -> Vec<&Section> {
         let (group, channel) = key.strip_prefix("Gr")?.split_once("-Ch")?;
         Some((group.parse::<u32>().ok()?, channel.parse::<u32>().ok()?))
     };
-    let list = sections.iter().find(|section| section.name == "DataSet");
+    // The first section of each name. Each is one data set, even if it is listed again.
+    let mut named = HashMap::new();
+    for section in sections {
+        named.entry(section.name.as_str()).or_insert(section);
+    }
+    let list = named.get("DataSet").copied();
     let pairs = list.iter().flat_map(|list| &list.pairs);
     let mut places: Vec<_> = pairs.filter_map(|(key, name)| Some((place(key)?, name))).collect();
     places.sort();
-    places.iter().filter_map(|(_, name)| sections.iter().find(|section| section.name == **name)).collect()
+    places.iter().filter_map(|(_, name)| named.remove(name.as_str())).collect()
 }
 
 impl Section {

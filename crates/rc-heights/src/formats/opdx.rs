@@ -17,16 +17,44 @@ pub(super) const MARK: &[u8] = b"VCA DATA\x01\x00\x00\x55";
 /// Maximum number of containers in each other. Files have four.
 const DEEPEST: usize = 16;
 
+/// Maximum length of the path of a container (bytes). Those of files are below a hundred.
+const LONGEST: usize = 512;
+
 /// Folder of the maps, and of profiles.
 const MAPS: &str = "/2D_Data/";
-const PROFILES: &str = "/1D_Data/";
-/// The name of the main map.
-const MAIN: &str = "/MetaData/PrimaryData2D";
+const PROFILES: &str = "/1D_Data";
+/// The container of the name of the main map, and that name.
+const MAIN: [&str; 2] = ["/MetaData", "PrimaryData2D"];
 
-/// An item that is used, with its path.
-struct Item<'a> {
+/// Names of the quantities of a map: scale of its heights, and extents along x and y.
+const QUANTITIES: [&str; 3] = ["DataScale", "Dimension2Extent", "Dimension1Extent"];
+
+/// What the items of one container say of a map.
+struct MapItems<'a> {
+    name: String,
+    /// Columns, rows and numbers.
+    matrix: Option<(u32, u32, &'a [u8])>,
+    /// Number and symbol of the unit of each of [`QUANTITIES`].
+    quantities: [Option<(f64, String)>; 3],
+}
+
+/// What is used of a file.
+#[derive(Default)]
+struct Contents<'a> {
+    /// The maps, in the order of the file.
+    maps: Vec<MapItems<'a>>,
+    /// The name of the main map.
+    main: Option<String>,
+    has_profiles: bool,
+}
+
+/// A container that is not finished.
+struct Open<'a> {
     path: String,
-    value: Value<'a>,
+    /// What follows it.
+    after: Bytes<'a>,
+    /// Place of its map in [`Contents::maps`], once an item of a map is found.
+    map: Option<usize>,
 }
 
 enum Value<'a> {
@@ -39,33 +67,32 @@ enum Value<'a> {
 }
 
 pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
-    let items = items(bytes)?;
-    let main = items.iter().find(|item| item.path == MAIN);
-    let main = main.and_then(|item| if let Value::Text(name) = &item.value { Some(name.as_str()) } else { None });
+    let Contents { maps, main, has_profiles } = contents(bytes)?;
     let mut channels = Vec::new();
-    for item in &items {
-        let name = item.path.strip_prefix(MAPS).and_then(|path| path.strip_suffix("/Matrix"));
-        if let (Some(name), Value::Matrix(nx, ny, data)) = (name, &item.value) {
-            let channel = channel(name, &items, (*nx, *ny, data));
-            // The main map comes first.
-            let at = if Some(name) == main { 0 } else { channels.len() };
-            channels.insert(at, (name.to_owned(), channel));
+    let mut first = None;
+    for map in maps {
+        let Some(matrix) = map.matrix else { continue };
+        if first.is_none() && main.as_ref() == Some(&map.name) {
+            first = Some(channels.len());
         }
+        let channel = channel(&map, matrix);
+        channels.push((map.name, channel));
     }
-    if channels.is_empty() && items.iter().any(|item| item.path.starts_with(PROFILES)) {
+    if channels.is_empty() && has_profiles {
         let cure = "a map is needed: give a measurement of an area".to_owned();
         return Err(FormatError::Profile { what: "a line of heights".to_owned(), cure });
+    }
+    if let Some(at) = first {
+        // The main map comes first.
+        channels[..=at].rotate_right(1);
     }
     Ok(super::channel::each(channels))
 }
 
-fn channel<'a>(name: &str, items: &[Item<'_>], matrix: (u32, u32, &'a [u8])) -> Result<Channel<'a>, FormatError> {
+fn channel<'a>(map: &MapItems<'_>, matrix: (u32, u32, &'a [u8])) -> Result<Channel<'a>, FormatError> {
     let quantity = |field: &'static str| {
-        let path = format!("{MAPS}{name}/{field}");
-        items.iter().find_map(|item| match &item.value {
-            Value::Quantity(value, unit) if item.path == path => Some((*value, unit.as_str())),
-            _ => None,
-        })
+        let at = QUANTITIES.iter().position(|name| *name == field)?;
+        map.quantities[at].as_ref().map(|(value, unit)| (*value, unit.as_str()))
     };
     let missing = |field| FormatError::Missing { format: Format::Opdx, field };
     let (nx, ny, data) = matrix;
@@ -82,7 +109,7 @@ fn channel<'a>(name: &str, items: &[Item<'_>], matrix: (u32, u32, &'a [u8])) -> 
     let scale = factor(Format::Opdx, "DataScale", scale * unit.unwrap_or(1.0))?;
     let is_height = unit.is_some();
     let read = move || read(data, grid, scale, is_height, sides);
-    Ok(Channel { name: name.to_owned(), is_height, read: Box::new(read) })
+    Ok(Channel { name: map.name.clone(), is_height, read: Box::new(read) })
 }
 
 fn read(data: &[u8], grid: Grid, scale: f64, is_height: bool, sides: [f64; 2]) -> Result<HeightMap, FormatError> {
@@ -91,37 +118,74 @@ fn read(data: &[u8], grid: Grid, scale: f64, is_height: bool, sides: [f64; 2]) -
     Ok(map(grid, values, is_height, Some(sides)).of_numbers(scale))
 }
 
-/// All items but containers, in the order of the file.
-fn items(bytes: &[u8]) -> Result<Vec<Item<'_>>, FormatError> {
+/// The items that are used.
+fn contents(bytes: &[u8]) -> Result<Contents<'_>, FormatError> {
     let mut rest = Bytes::new(bytes, Format::Opdx);
     rest.take(MARK.len())?;
-    // Containers that are not finished: the path, and what follows them.
-    let mut open: Vec<(String, Bytes<'_>)> = Vec::new();
-    let mut items = Vec::new();
+    let mut open: Vec<Open<'_>> = Vec::new();
+    let mut found = Contents::default();
     loop {
-        let path = open.last().map_or("", |(path, _)| path.as_str());
         if rest.rest().is_empty() {
-            let Some((_, after)) = open.pop() else { return Ok(items) };
+            let Some(Open { after, .. }) = open.pop() else { return Ok(found) };
             rest = after;
             continue;
         }
-        let path = format!("{path}/{}", text(name(&mut rest)?));
+        let name = text(name(&mut rest)?);
         match rest.u8()? {
             0x7d | 0x46 | 0x47 => {
                 if open.len() == DEEPEST {
-                    return Err(refused(Format::Opdx, "depth of containers", &path, "at most 16"));
+                    return Err(refused(Format::Opdx, "depth of containers", &name, "at most 16"));
                 }
+                let path = open.last().map_or("", |container| container.path.as_str());
+                let length = path.len() + 1 + name.len();
+                // Each map has the path of its container.
+                if length > LONGEST {
+                    return Err(refused(Format::Opdx, "length of the path of a container", &length, "at most 512"));
+                }
+                let path = format!("{path}/{name}");
                 let content = part(&mut rest)?;
-                open.push((path, std::mem::replace(&mut rest, Bytes::new(content, Format::Opdx))));
+                let after = std::mem::replace(&mut rest, Bytes::new(content, Format::Opdx));
+                open.push(Open { path, after, map: None });
             }
             // The last item of a container, or of the file. Some bytes without meaning follow.
             0x7f => rest = Bytes::new(&[], Format::Opdx),
             kind => {
                 let value = value(kind, &mut rest)?;
-                if [MAPS, PROFILES, MAIN].iter().any(|start| path.starts_with(start)) {
-                    items.push(Item { path, value });
+                if let Some(container) = open.last_mut() {
+                    found.add(container, &name, value);
                 }
             }
+        }
+    }
+}
+
+impl<'a> Contents<'a> {
+    /// Keeps what an item of a container says, if it is used. The first of two items with a name counts.
+    fn add(&mut self, container: &mut Open<'_>, name: &str, value: Value<'a>) {
+        self.has_profiles |= container.path == PROFILES
+            || container.path.strip_prefix(PROFILES).is_some_and(|path| path.starts_with('/'));
+        if [container.path.as_str(), name] == MAIN {
+            if let (None, Value::Text(name)) = (&self.main, value) {
+                self.main = Some(name);
+            }
+            return;
+        }
+        let Some(of_map) = container.path.strip_prefix(MAPS) else { return };
+        let quantity = QUANTITIES.iter().position(|quantity| *quantity == name);
+        if quantity.is_none() && name != "Matrix" {
+            return;
+        }
+        let at = *container.map.get_or_insert_with(|| {
+            self.maps.push(MapItems { name: of_map.to_owned(), matrix: None, quantities: [const { None }; 3] });
+            self.maps.len() - 1
+        });
+        let map = &mut self.maps[at];
+        match (quantity, value) {
+            (None, Value::Matrix(nx, ny, data)) if map.matrix.is_none() => map.matrix = Some((nx, ny, data)),
+            (Some(i), Value::Quantity(value, unit)) if map.quantities[i].is_none() => {
+                map.quantities[i] = Some((value, unit));
+            }
+            _ => {}
         }
     }
 }

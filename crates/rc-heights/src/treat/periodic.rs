@@ -46,10 +46,13 @@ fn tukey(t: f64, taper: f64) -> f64 {
 
 /// Heights above `base`, multiplied by a window.
 ///
-/// The window is the product of `weight` of the places along x and y, which are in [0, 1].
+/// The window is the product of `weight` of the places along x and y, which are in [0, 1]. A single row or column has
+/// no window across itself.
 fn window(mut map: HeightMap, base: f64, weight: impl Fn(f64) -> f64) -> HeightMap {
     let grid = map.heights.grid();
-    let weights = |n: usize| -> Vec<f64> { (0..n).map(|i| weight((i as f64 + 0.5) / n as f64)).collect() };
+    let weights = |n: usize| -> Vec<f64> {
+        if n == 1 { vec![1.0] } else { (0..n).map(|i| weight((i as f64 + 0.5) / n as f64)).collect() }
+    };
     let (along_x, along_y) = (weights(grid.nx()), weights(grid.ny()));
     for (row, y) in map.heights.values_mut().chunks_exact_mut(grid.nx()).zip(&along_y) {
         row.iter_mut().zip(&along_x).for_each(|(height, x)| *height = base + x * y * (*height - base));

@@ -67,6 +67,12 @@ fn channels_are_listed_and_read_by_name() {
     let back = channel(&nid, Format::Nid, "z-axis backward").expect("the way back");
     assert!((back.heights.values()[0] - 6e-9).abs() < 1e-14, "{:?}", back.heights.values());
     assert_eq!(channel(&nid, Format::Nid, "Deflection").expect("a force").height_unit, Unit::NotLength);
+    // A section is one data set, even if the list has it twice.
+    let twice = String::from_utf8_lossy(&nid).replace("Gr1-Ch0=C", "Gr1-Ch0=C\r\nGr1-Ch1=A");
+    assert_eq!(listed(twice.as_bytes(), Format::Nid).len(), 3);
+    let long = build::opdx(&[build::opdx_map(&"n".repeat(600), &build::opdx_items())]);
+    let refused = channel(&long, Format::Opdx, "1").expect_err("a long path").to_string();
+    assert!(refused.contains("length of the path of a container"), "{refused}");
     // The main map comes first.
     assert_eq!(listed(&build::opdx_two(), Format::Opdx), list(&[("Height", true), ("Intensity", false)]));
     let two = build::vk6(b"VK7", &build_instruments::vk4(16, 2));

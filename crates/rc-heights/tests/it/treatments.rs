@@ -115,6 +115,11 @@ fn hann_keeps_the_mean_square_of_a_wave() {
     let windowed = hann(&wave.heights);
     // The product of window and wave has a mean square of ½, except for waves of the window, which are 20 waves away.
     assert!((windowed.rms() * 2_f64.sqrt() - 1.0).abs() < 1e-3, "rms {}", windowed.rms());
+    for (nx, ny) in [(256, 1), (1, 256)] {
+        let line = map(nx, ny, [1.0, 1.0], |x, y| (TAU * 20.3 * if ny == 1 { x } else { y }).sin());
+        let rms = hann(&line.heights).rms() * 2_f64.sqrt();
+        assert!((rms - 1.0).abs() < 1e-2, "one line of {nx} x {ny}: rms {rms}");
+    }
 }
 
 #[test]
