@@ -85,10 +85,9 @@ mod tests {
         let (nx, ny) = (24, 10);
         let grid = Grid::in_cell(nx, ny, 0.4).expect("a grid");
         let at = |ix: usize, iy: usize| match iy {
-            0..3 => 0.02,
-            3 => 0.0,
-            4..8 if ix < 8 => 0.03,
-            4..8 => 0.01,
+            0..=2 => 0.02,
+            4..=7 if ix < 8 => 0.03,
+            4..=7 => 0.01,
             _ => 0.0,
         };
         let gap = Field::new(grid, (0..nx * ny).map(|i| at(i % nx, i / nx)).collect()).expect("a field");

@@ -37,7 +37,8 @@ const AXES: [&str; 2] = ["x", "y"];
 pub(super) struct Sealing {
     /// The sealing pressure (Pa) of the only problem; `None` if there are several, or its film does not close between the
     /// loads.
-    sealing_pressure: Option<f64>,
+    #[serde(rename = "sealing_pressure")]
+    pressure: Option<f64>,
     /// Highest mean pressure (Pa) with a flow and lowest without, of the only problem.
     bracket: Option<[f64; 2]>,
     /// Each scene, and each variation of its keys.
@@ -50,7 +51,8 @@ struct Problem {
     #[serde(skip_serializing_if = "String::is_empty")]
     scene: String,
     /// Mean over surfaces and axes (Pa); `None` unless the film of each closes between the loads.
-    sealing_pressure: Option<f64>,
+    #[serde(rename = "sealing_pressure")]
+    pressure: Option<f64>,
     /// Standard error (Pa) of the mean over at least three surfaces, each of which counts with the mean of its axes.
     standard_error: Option<f64>,
     /// Lowest pressure (Pa) with a flow, and highest without, in the brackets of all surfaces and axes.
@@ -64,7 +66,8 @@ struct SurfaceSeal {
     seed: Option<u64>,
     axis: &'static str,
     /// Middle of the bracket (Pa).
-    sealing_pressure: Option<f64>,
+    #[serde(rename = "sealing_pressure")]
+    pressure: Option<f64>,
     /// Highest mean pressure (Pa) at which the film leaks, and lowest at which it does not; null where no load shows it.
     bracket: [Option<f64>; 2],
 }
@@ -97,8 +100,8 @@ pub(super) fn find(surfaces: &Surfaces, sweep: &Sweep, folder: &Path, stop: &Sto
         }
         for (axis, name) in AXES.into_iter().enumerate() {
             let bracket = search.bracket(axis)?;
-            let sealing_pressure = bracket[0].zip(bracket[1]).map(|(leaks, seals)| 0.5 * (leaks + seals));
-            let seal = SurfaceSeal { seed: surface.seed(), axis: name, sealing_pressure, bracket };
+            let pressure = bracket[0].zip(bracket[1]).map(|(leaks, seals)| 0.5 * (leaks + seals));
+            let seal = SurfaceSeal { seed: surface.seed(), axis: name, pressure, bracket };
             if let Some(problem) = problems.last_mut() {
                 problem.surfaces.push(seal);
             }
@@ -107,7 +110,7 @@ pub(super) fn find(surfaces: &Surfaces, sweep: &Sweep, folder: &Path, stop: &Sto
     problems.iter_mut().for_each(Problem::average);
     let only = if let [only] = &problems[..] { Some(only) } else { None };
     let sealing = Sealing {
-        sealing_pressure: only.and_then(|only| only.sealing_pressure),
+        pressure: only.and_then(|only| only.pressure),
         bracket: only.and_then(|only| only.bracket),
         problems,
     };
@@ -191,7 +194,7 @@ impl Search<'_> {
 
 impl Problem {
     fn new(scene: String) -> Self {
-        Self { scene, sealing_pressure: None, standard_error: None, bracket: None, surfaces: Vec::new() }
+        Self { scene, pressure: None, standard_error: None, bracket: None, surfaces: Vec::new() }
     }
 
     /// Fills in the means, once all surfaces are there.
@@ -201,7 +204,7 @@ impl Problem {
         self.bracket = both.map(|(low, high)| [low, high]);
         // Without those beyond the loads the mean would be too small.
         let of_surface = |pair: &[SurfaceSeal]| {
-            let axes: Option<Vec<f64>> = pair.iter().map(|seal| seal.sealing_pressure).collect();
+            let axes: Option<Vec<f64>> = pair.iter().map(|seal| seal.pressure).collect();
             axes.map(|axes| axes.iter().sum::<f64>() / axes.len() as f64)
         };
         let Some(found) = self.surfaces.chunks(AXES.len()).map(of_surface).collect::<Option<Vec<f64>>>() else {
@@ -210,7 +213,7 @@ impl Problem {
         let n = found.len() as f64;
         let mean = found.iter().sum::<f64>() / n;
         let variance = found.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        self.sealing_pressure = Some(mean);
+        self.pressure = Some(mean);
         self.standard_error = (found.len() >= FEWEST).then(|| (variance / n).sqrt());
     }
 
@@ -218,7 +221,7 @@ impl Problem {
     fn line(&self) -> String {
         let pressure = |value: f64| engineering(value, "Pa");
         let name = if self.scene.is_empty() { String::new() } else { format!(" ({})", self.scene) };
-        let of_axis = |seal: &SurfaceSeal| match (seal.sealing_pressure, seal.bracket) {
+        let of_axis = |seal: &SurfaceSeal| match (seal.pressure, seal.bracket) {
             (Some(found), _) => format!("{} along {}", pressure(found), seal.axis),
             (None, [Some(leaks), _]) => format!("above {} along {}", pressure(leaks), seal.axis),
             (None, [None, Some(seals)]) => format!("below {} along {}", pressure(seals), seal.axis),
@@ -230,7 +233,7 @@ impl Problem {
         }
         let n = self.surfaces.len() / AXES.len();
         let error = self.standard_error.map_or_else(String::new, |error| format!(" ± {}", pressure(error)));
-        match (self.sealing_pressure, self.bracket) {
+        match (self.pressure, self.bracket) {
             (Some(mean), Some([low, high])) => {
                 let range = format!("from {} to {}", pressure(low), pressure(high));
                 format!("sealing pressure{name}: {}{error}, mean of {n} surfaces, {range}\n", pressure(mean))
