@@ -136,8 +136,8 @@ fn wrong_preparations_are_refused_and_nothing_is_written() {
     place.write("scene.toml", "waves = 8\ngrid = 64\n");
     for (flags, expected) in [
         (&["--despike", "1"][..], "despike: must be 3 or more"),
-        (&["--no-fill"], "needs a map without missing points (this one has 6)"),
-        (&["--no-fill", "--no-periodic"], "rc surface --fill laplace"),
+        (&["--no-fill"], "no_fill: 6 of 4602 points are missing, and a map with holes can be neither mirrored nor"),
+        (&["--no-fill", "--no-periodic"], "omit --no-fill, give --fill nearest or --fill lowest"),
         (&["--despike", "--no-despike"], "cannot be used with"),
         (&["--high-pass", "1"], "high_pass: must be from"),
         (&["--waves", "8"], "are for height maps"),
