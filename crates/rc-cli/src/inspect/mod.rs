@@ -1,6 +1,7 @@
 //! `rc inspect`: statistics of a height map, a result or a sweep.
 
 pub(crate) mod args;
+pub(crate) mod mirrored;
 pub(crate) mod record;
 pub(crate) mod text;
 
@@ -33,7 +34,7 @@ use crate::scene::keys::{RunKeys, Scene, SurfaceKeys};
 use crate::scene::loaded::LoadedSurface;
 use crate::scene::profile::Profile;
 use crate::scene::values::GridSpec;
-use crate::scene::{file, heights, resolve};
+use crate::scene::{file, heights, origin, resolve};
 use crate::text::{solved, written};
 use crate::warnings::shown::{refuse, tell};
 use crate::{terminal, warnings};
@@ -204,16 +205,20 @@ impl Inspected {
         };
         let mut warnings = warnings::surface::of_map(&map);
         warnings.extend(warnings::surface::assumed(&assumed));
-        let notes = map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
+        let mut notes: Vec<_> =
+            map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
         let cell = PeriodicCell::rectangle(cell, cell_y.unwrap_or(cell)).map_err(CliError::input)?;
         let is_complete = map.missing() == 0;
         let (heights, _) = heights::divided(heights::in_cell(path, map.heights, cell)?, cell.side());
         let record = if is_complete {
-            SurfaceRecord::of(&heights, cell.side(), moments_of_grid(&heights))
+            let made_by = origin::of(path, None);
+            let of_map = SurfaceRecord::of_source(&heights, cell.side(), moments_of_grid(&heights), Some(made_by));
+            SurfaceRecord { source: None, ..of_map }
         } else {
             SurfaceRecord::of_measured(&heights, cell.side())
         };
         warnings.extend(record.shape().warnings());
+        notes.extend(record.notes);
         Ok(Self { heights, record: SurfaceRecord { notes, warnings, ..record } })
     }
 }
@@ -230,10 +235,11 @@ pub(crate) fn of_surface(path: &Path, over: Scene) -> Result<Inspected, CliError
     let surface = setup.load_within(budget)?;
     budget.check_grid("the surface", surface.grid)?;
     let heights = surface.heights()?.into_owned();
-    let record = SurfaceRecord::of(&heights, setup.cell.side(), surface.moments(&heights));
+    let moments = surface.moments(&heights);
+    let record = SurfaceRecord::of_source(&heights, setup.cell.side(), moments, surface.origin);
     let warnings = [surface.warnings, record.shape().warnings()].concat();
-    let source = surface.origin;
-    Ok(Inspected { heights, record: SurfaceRecord { source, notes: surface.notes, warnings, ..record } })
+    let notes = [surface.notes, record.notes].concat();
+    Ok(Inspected { heights, record: SurfaceRecord { notes, warnings, ..record } })
 }
 
 /// Writes the pictures of the surface of a scene, and returns their names. Its warnings are told unless

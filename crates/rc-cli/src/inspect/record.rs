@@ -9,6 +9,7 @@ use rc_sweep::{MapOrigin, Warning};
 use serde::Serialize;
 
 use super::areal::ArealRow;
+use super::mirrored;
 use crate::warnings::surface::Shape;
 
 /// Statistics of a height map.
@@ -57,6 +58,9 @@ pub(crate) struct SurfaceRecord {
     pub(crate) border_step: Option<f64>,
     /// Whether the spectrum is of the heights under Hann's window, because they are not periodic.
     pub(crate) windowed: bool,
+    /// Whether the spectrum is that of the measured part of a mirrored map.
+    #[serde(skip)]
+    pub(crate) of_part: bool,
     /// Exponent and ends of the power law in the spectrum.
     #[serde(flatten)]
     pub(crate) ends: EndsRow,
@@ -140,10 +144,12 @@ impl EndsRow {
 }
 
 impl HurstRow {
-    fn new(fit: HurstFit, side: f64) -> Self {
+    /// The law of the spectrum of a part with side `side` (m), of which a side of the cell has `n_parts`.
+    fn new(fit: HurstFit, (side, n_parts): (f64, f64)) -> Self {
         let exponent = 2.0 * (1.0 + fit.hurst);
         let c0 = fit.ln_c.exp() * side.powi(4) * (std::f64::consts::TAU / side).powf(exponent);
-        Self { hurst: fit.hurst, c0, from_waves: fit.from, to_waves: fit.to, deviation: fit.deviation }
+        let [from_waves, to_waves] = [fit.from, fit.to].map(|waves| n_parts * waves);
+        Self { hurst: fit.hurst, c0, from_waves, to_waves, deviation: fit.deviation }
     }
 
     /// C (m⁴) on the line at `wavenumber` (rad/m).
@@ -194,9 +200,10 @@ pub(crate) struct SpectrumRow {
 }
 
 impl SpectrumRow {
-    fn new(ring: &SpectrumBin, side: f64) -> Self {
+    /// The ring in the spectrum of a part with side `side` (m), of which a side of the cell has `n_parts`.
+    fn new(ring: &SpectrumBin, (side, n_parts): (f64, f64)) -> Self {
         Self {
-            waves: ring.wavenumber,
+            waves: n_parts * ring.wavenumber,
             wavenumber: std::f64::consts::TAU * ring.wavenumber / side,
             psd: ring.psd * side.powi(4),
             modes: ring.n_modes,
@@ -211,36 +218,48 @@ impl SurfaceRecord {
     /// texture and no spectrum of an area.
     #[must_use]
     pub(crate) fn of(heights: &Field, side: f64, moments: Moments) -> Self {
-        let border = BorderStep::of(heights);
-        let measured = Self::of_measured(heights, side);
+        Self::of_source(heights, side, moments, None)
+    }
+
+    /// The record of heights from `source`. The spectrum of a mirrored map is that of its measured part.
+    pub(crate) fn of_source(heights: &Field, side: f64, moments: Moments, source: Option<MapOrigin>) -> Self {
         let with_moments = Self {
             rms_height: moments.rms_height * side,
             rms_slope: moments.rms_slope,
             rms_curvature: Some(moments.rms_curvature / side),
             nayak: Some(moments.nayak),
-            border_step: Some(border.ratio()),
-            ..measured
+            border_step: Some(BorderStep::of(heights).ratio()),
+            ..Self::of_measured(heights, side)
         };
         if heights.grid().nx().min(heights.grid().ny()) == 1 {
-            return with_moments;
+            return Self { source, ..with_moments };
         }
-        let windowed = !border.is_periodic();
-        let under_window = if windowed { Cow::Owned(rc_heights::hann(heights)) } else { Cow::Borrowed(heights) };
+        let part = source.as_ref().and_then(|origin| mirrored::measured_part(heights, origin));
+        let n_parts = if part.is_some() { 2.0 } else { 1.0 };
+        let (seen, of_part) = (part.as_ref().unwrap_or(heights), (side / n_parts, n_parts));
+        let windowed = !BorderStep::of(seen).is_periodic();
+        let under_window = if windowed { Cow::Owned(rc_heights::hann(seen)) } else { Cow::Borrowed(seen) };
         let rings = radial_spectrum(&under_window);
-        let fit = fit_hurst(&rings, &Measured::on(heights.grid(), windowed));
+        let fit = fit_hurst(&rings, &Measured::on(seen.grid(), windowed));
         Self {
             windowed,
-            ends: fit.map_or_else(EndsRow::default, |fit| EndsRow::new(&fit, side)),
-            hurst_fit: fit.map(|fit| HurstRow::new(fit, side)),
-            spectrum: rings.iter().map(|ring| SpectrumRow::new(ring, side)).collect(),
-            areal: with_moments.areal.clone().with_texture(heights, &under_window, side),
+            of_part: part.is_some(),
+            ends: fit.map_or_else(EndsRow::default, |fit| EndsRow::new(&fit, of_part.0)),
+            hurst_fit: fit.map(|fit| HurstRow::new(fit, of_part)),
+            spectrum: rings.iter().map(|ring| SpectrumRow::new(ring, of_part)).collect(),
+            areal: with_moments.areal.clone().with_texture(seen, &under_window, of_part.0),
+            notes: part.iter().map(|_| mirrored::NOTE.to_owned()).collect(),
+            source,
             ..with_moments
         }
     }
 
     /// Slope and range of the surface, for warnings.
     pub(crate) fn shape(&self) -> Shape {
-        Shape { rms_slope: self.rms_slope, range: self.h_max - self.h_min, sides: [self.cell, self.cell_y] }
+        // The border of a map that is not periodic is no slope of the surface.
+        let jumps = self.windowed && !self.of_part;
+        let rms_slope = if jumps { self.parameters.sdq } else { self.rms_slope };
+        Shape { rms_slope, range: self.h_max - self.h_min, sides: [self.cell, self.cell_y] }
     }
 
     /// The record of the measured points of `heights` (in λ, `NaN` where missing) in a cell of side `side` (m).
@@ -268,6 +287,7 @@ impl SurfaceRecord {
             areal: ArealRow::of(heights, side, statistics.mean),
             border_step: None,
             windowed: false,
+            of_part: false,
             ends: EndsRow::default(),
             hurst_fit: None,
             spectrum: Vec::new(),

@@ -137,7 +137,9 @@ pub(crate) fn parameter_lines(s: &SurfaceRecord) -> Vec<(&'static str, String)> 
 /// Lines about the periodicity of the map and the power law in its spectrum.
 fn spectrum_lines(s: &SurfaceRecord) -> String {
     let Some(border_step) = s.border_step else { return aligned(&[("spectrum", not_known())]) };
-    let state = if s.windowed {
+    let state = if s.of_part {
+        ": mirrored, so the spectrum is that of the measured part, whose mirror images change it"
+    } else if s.windowed {
         ": not periodic (rc surface --periodic), so the spectrum is under a Hann window"
     } else if s.spectrum.is_empty() {
         ""

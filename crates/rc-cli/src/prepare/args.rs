@@ -1,9 +1,9 @@
 //! Arguments of `rc prepare`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Arg, Args};
-use rc_heights::{Crop, Fill, Level, Treatment};
+use rc_heights::{Crop, Fill, HeightMap, Level, Treatment};
 
 use crate::error::CliError;
 use crate::scene::keys::{RunKeys, SurfaceKeys};
@@ -54,7 +54,7 @@ pub(crate) struct Without {
     /// Keep the tilt
     #[arg(long, conflicts_with = "level")]
     no_level: bool,
-    /// Do not fill missing points (needs --no-periodic, and a map without any)
+    /// Do not fill missing points (a map with holes can be neither mirrored nor solved)
     #[arg(long, conflicts_with = "fill")]
     no_fill: bool,
     /// Do not mirror the map, as for --boundary free
@@ -108,6 +108,28 @@ pub(crate) fn treatments(keys: &TreatmentKeys) -> Result<Vec<Treatment>, CliErro
         treatments.insert(0, Treatment::Crop(Crop::Measured));
     }
     Ok(treatments)
+}
+
+/// Refuses a map with holes that are not filled, which no later step takes. `cropped` is the map after its first crops.
+///
+/// # Errors
+/// [`CliError::Input`] with the number of missing points, and what to give.
+pub(crate) fn check_filled(path: &Path, keys: &TreatmentKeys, cropped: &HeightMap) -> Result<(), CliError> {
+    let missing = cropped.missing();
+    if keys.fill.is_some() || missing == 0 {
+        return Ok(());
+    }
+    let message = format_args!(
+        "no_fill: {missing} of {} points are missing, and a map with holes can be neither mirrored nor solved; omit \
+         --no-fill, give --fill nearest or --fill lowest, or a --crop without holes",
+        cropped.heights.grid().len()
+    );
+    Err(CliError::in_file(path, message))
+}
+
+/// The place behind the crops at the beginning.
+pub(crate) fn after_crops(treatments: &[Treatment]) -> usize {
+    treatments.iter().take_while(|treatment| matches!(treatment, Treatment::Crop(_))).count()
 }
 
 /// Hides the keys of generated surfaces, and those that the file or the treatments determine.

@@ -7,7 +7,7 @@ use rc_sweep::files::Staged;
 use rc_sweep::memory::Budget;
 use rc_sweep::{files, to_json};
 
-use super::args::{PrepareArgs, treatments};
+use super::args::{PrepareArgs, after_crops, check_filled, treatments};
 use super::pictures;
 use super::record::PrepareRecord;
 use crate::error::CliError;
@@ -28,7 +28,8 @@ pub(crate) fn run(args: PrepareArgs) -> Result<(), CliError> {
     if args.run.time_limit.is_some() {
         return Err(CliError::input("time_limit: rc prepare has none; omit --time-limit"));
     }
-    let treatments = treatments(&args.steps.keys())?;
+    let keys = args.steps.keys();
+    let treatments = treatments(&keys)?;
     let flags = Scene { surface: args.surface, contact: ContactKeys::default(), run: args.run };
     let Scene { surface, run, .. } = resolve::layers(Some(&args.file), flags)?;
     threads::start(run.threads)?;
@@ -37,6 +38,12 @@ pub(crate) fn run(args: PrepareArgs) -> Result<(), CliError> {
     files::check_folder(folder)?;
     let read = treated::read(surface)?;
     let before = read.map.clone();
+    if keys.fill.is_none() {
+        let crops = &treatments[..after_crops(&treatments)];
+        let (cropped, _) =
+            rc_heights::apply(before.clone(), crops).map_err(|cause| CliError::in_file(&read.path, cause))?;
+        check_filled(&read.path, &keys, &cropped)?;
+    }
     let prepared = treated::treat(read, &treatments, budget)?;
     let heights = prepared.surface.heights()?;
     let surface = prepared.record(&heights);

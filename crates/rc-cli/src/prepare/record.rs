@@ -5,6 +5,7 @@ use rc_heights::Effect;
 use rc_sweep::{MapOrigin, Warning};
 use serde::Serialize;
 
+use crate::inspect::mirrored;
 use crate::inspect::record::{SurfaceRecord, TreatmentRow};
 use crate::inspect::text::{surface_lines, treatments};
 use crate::text::aligned;
@@ -46,9 +47,10 @@ impl<'a> PrepareRecord<'a> {
         };
         let removed = effects.iter().flat_map(|effect| effect.removed.iter().map(|removed| spike(effect, *removed)));
         let unchanged = || vec!["rows and columns are in the order of the file".to_owned()];
+        let notes: Vec<_> = surface.notes.iter().filter(|note| *note != mirrored::NOTE).cloned().collect();
         Self {
             source: &surface.source,
-            orientation: if surface.notes.is_empty() { unchanged() } else { surface.notes.clone() },
+            orientation: if notes.is_empty() { unchanged() } else { notes },
             steps: &surface.treatments,
             spikes: removed.collect(),
             grid: surface.grid,

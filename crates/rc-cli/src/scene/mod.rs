@@ -20,3 +20,4 @@ mod other_body;
 pub(crate) mod profile;
 pub mod psd_file;
 pub(crate) mod quantity;
+pub(crate) mod written;

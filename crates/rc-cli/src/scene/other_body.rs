@@ -9,6 +9,7 @@ use rc_sweep::Warning;
 
 use super::heights;
 use super::keys::SurfaceKeys;
+use super::like;
 use crate::error::CliError;
 use crate::warnings;
 
@@ -19,12 +20,13 @@ pub(super) struct OtherBody {
 }
 
 impl OtherBody {
-    /// Reads the map in metres. `keys` say how files are read.
+    /// Reads the map in metres, which may be that of a folder. `keys` say how files are read.
     ///
     /// # Errors
     /// [`CliError::Input`] when the file is not a map without missing points, or not of this cell.
     pub(super) fn read(path: &Path, keys: &SurfaceKeys, cell: PeriodicCell) -> Result<Self, CliError> {
         let params = keys.read_params();
+        let path = &like::file_of(path);
         let map = heights::read(path, &params, keys.scales())?;
         heights::check_heights(path, &map.heights, &params)?;
         // Sides without a unit are not known.

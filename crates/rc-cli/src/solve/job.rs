@@ -20,6 +20,9 @@ use crate::scene::keys::{RunKeys, Scene};
 use crate::warnings::shown;
 use crate::{terminal, text};
 
+/// What is printed where `elements` has no effect, because the method was chosen.
+const NO_ELEMENTS: &str = "note: the method has no elements but those of the grid, so there is no elements.csv\n";
+
 /// A resolved scene, and how it is run.
 #[derive(Clone, Debug)]
 pub(super) struct Job {
@@ -137,7 +140,7 @@ impl Job {
         }
         // The bar must vanish before anything is printed. The picture of --watch must stay until the result exists.
         drop(progress);
-        self.print(&summary)?;
+        self.print(&summary, solved.has_elements())?;
         // Warnings from before the solve are first in the summary, and are printed already.
         let late = &summary.warnings[solved.n_early_warnings()..];
         if self.ranks().rank() == 0 {
@@ -158,7 +161,7 @@ impl Job {
     }
 
     /// Prints the summary, on the first rank only.
-    fn print(&self, summary: &Summary) -> Result<(), CliError> {
+    fn print(&self, summary: &Summary, has_elements: bool) -> Result<(), CliError> {
         if self.ranks().rank() > 0 {
             return Ok(());
         }
@@ -168,7 +171,9 @@ impl Job {
             (false, false) => {
                 let units = self.scene.contact.units;
                 let text = text::solved(summary, units.cell().sides(), units.elasticity().e_star());
-                terminal::print(&(text + &text::written(self.run.out.as_deref())))
+                let is_lost = self.scene.contact.keys.elements && !has_elements;
+                let note = if is_lost { NO_ELEMENTS } else { "" };
+                terminal::print(&(text + note + &text::written(self.run.out.as_deref())))
             }
         }
     }

@@ -32,7 +32,7 @@ use self::job::Job;
 use crate::error::CliError;
 use crate::run::stop;
 use crate::scene::keys::{RunKeys, Scene};
-use crate::scene::{features, file, resolve};
+use crate::scene::{features, file, resolve, written};
 use crate::terminal;
 
 /// Folder of the results of a run without arguments.
@@ -63,7 +63,12 @@ pub(crate) fn run(args: SolveArgs) -> Result<(), CliError> {
 /// Without arguments it is the embedded example, with its own folder.
 fn scene_of(args: SolveArgs) -> Result<Scene, CliError> {
     if args.scene_file.is_some() || !args.scene.is_empty() {
-        return resolve::layers(args.scene_file.as_deref(), args.scene);
+        let flags = args.scene.contact.clone();
+        let scene = resolve::layers(args.scene_file.as_deref(), args.scene)?;
+        let is_lost = scene.run.out.is_none() && !args.dry_run;
+        let without = "applies to the files of the results; give --out DIR";
+        written::check(&flags, &scene, is_lost.then_some(without))?;
+        return Ok(scene);
     }
     if args.dry_run {
         return Ok(file::example());

@@ -238,6 +238,11 @@ impl<'a> Solved<'a> {
         self.failure.as_ref()
     }
 
+    /// Whether the method has elements of its own.
+    pub(crate) fn has_elements(&self) -> bool {
+        self.solution.elements().is_some()
+    }
+
     /// The summary in SI units, with the number `threads`.
     pub(crate) fn summary(&self, threads: usize) -> Summary {
         // This is computed only now, so that the time to the certified solution does not include it.

@@ -17,13 +17,13 @@ use super::distinct::{Common, Distinct};
 use super::ranges;
 use super::record::{STUDY_FILE, StudyRecord, TreatmentOf, lines};
 use super::rows::{Pictures, SAME_AS, STEP, StudyRows, TREATMENT};
-use super::variants::{Base, after_crops};
+use super::variants::Base;
 use crate::error::CliError;
-use crate::prepare::args::treatments;
+use crate::prepare::args::{after_crops, check_filled, treatments};
 use crate::report::{self, PAGE_FILE};
 use crate::run::threads;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene};
-use crate::scene::{origin, resolve};
+use crate::scene::{origin, resolve, written};
 use crate::surface::treated;
 use crate::sweep::solved::{self, HowRows, SolvedRows};
 
@@ -119,6 +119,12 @@ pub(super) fn run(args: StudyArgs, stop: Option<&dyn Observer>) -> Result<Solved
         let message = "has no height map; give a measured map, or heights.npy in a folder of rc surface";
         return Err(CliError::in_file(&args.file, message));
     }
+    if scene.surface.line {
+        let message =
+            "line: a study is for maps; omit --line, or solve each treated profile (rc surface --line, rc solve)";
+        return Err(CliError::input(message));
+    }
+    written::check(&args.scene.contact, &scene, Some("a study keeps no fields of its rows; omit it"))?;
     let run = scene.run.clone();
     resolve::check_size_and_material(&scene.surface, &scene.contact)?;
     let n_threads = threads::start(run.threads)?;
@@ -165,6 +171,7 @@ impl Study {
         let unchanged = treatments(&keys)?;
         let first = rc_heights::apply(read.map.clone(), &unchanged[..after_crops(&unchanged)]);
         let (cropped, _) = first.map_err(|cause| CliError::in_file(&read.path, cause))?;
+        check_filled(&read.path, &keys, &cropped)?;
         let sides = cropped.sides.unwrap_or_else(|| cropped.sides_of_width(1.0));
         // A force in the file of the scene is overridden by the list.
         if let Some(force) = args.scene.contact.force {

@@ -4,7 +4,7 @@ use rc_core::Boundary;
 use rc_heights::{Crop, Fill, HeightMap, Level, Periodic, Treatment};
 
 use crate::error::CliError;
-use crate::prepare::args::treatments;
+use crate::prepare::args::{after_crops, treatments};
 use crate::surface::treatment::{PeriodicName, TreatmentKeys};
 
 /// Robust deviations of a spike that a study tries.
@@ -133,11 +133,6 @@ impl Base<'_> {
         let [nx, ny] = [grid.nx(), grid.ny()].map(|n| ((CROP * n as f64).round() as usize).max(1));
         Treatment::Crop(Crop::Points { nx, ny, from: None })
     }
-}
-
-/// The place behind the crops at the beginning.
-pub(super) fn after_crops(treatments: &[Treatment]) -> usize {
-    treatments.iter().take_while(|treatment| matches!(treatment, Treatment::Crop(_))).count()
 }
 
 /// The place before the border is made periodic, and before the filters that take that border as it is.

@@ -42,12 +42,12 @@ pub(crate) struct Prepared {
 impl Prepared {
     /// The record of the surface, whose heights are given in λ.
     pub(crate) fn record(&self, heights: &rc_core::Field) -> SurfaceRecord {
-        let record = SurfaceRecord::of(heights, self.cell.side(), self.surface.moments(heights));
+        let (side, source) = (self.cell.side(), self.surface.origin.clone());
+        let record = SurfaceRecord::of_source(heights, side, self.surface.moments(heights), source);
         let warnings = [&self.warnings[..], &record.shape().warnings()].concat();
         SurfaceRecord {
             treatments: self.effects.iter().map(TreatmentRow::from).collect(),
-            notes: self.notes.clone(),
-            source: self.surface.origin.clone(),
+            notes: [&self.notes[..], &record.notes].concat(),
             warnings,
             ..record
         }

@@ -17,6 +17,7 @@ use crate::scene::keys::{ContactKeys, RunKeys, Scene};
 use crate::scene::like;
 use crate::scene::resolve::{self, ContactSetup};
 use crate::scene::surface::{Source, SurfaceSetup};
+use crate::scene::written;
 use crate::solve::memory_factor;
 
 /// One surface with its loads.
@@ -58,6 +59,10 @@ impl Surfaces {
     pub(super) fn new(args: &SweepArgs) -> Result<Self, CliError> {
         check_alternatives(args)?;
         let scenes = scenes(args)?;
+        let without = "applies to the files of the rows; give --fields";
+        for (_, scene) in &scenes {
+            written::check(&args.scene.contact, scene, (!args.fields).then_some(without))?;
+        }
         let run = scenes.first().map(|(_, scene)| scene.run.clone()).unwrap_or_default();
         // Files of waves are read with these threads.
         let threads = threads::start(run.threads)?;
@@ -258,7 +263,7 @@ impl SweptSurface {
             None => None,
             Some(path) => {
                 surface.add = path.file_name().map(Into::into);
-                Some(FileMark::of(path)?)
+                Some(FileMark::of(&like::file_of(path))?)
             }
         };
         Ok(PlannedSurface {

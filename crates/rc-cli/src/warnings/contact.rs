@@ -2,6 +2,7 @@
 
 use rc_core::quantity::{digits, engineering};
 use rc_core::{Boundary, HeightSource};
+use rc_heights::BorderStep;
 use rc_solver::Control;
 use rc_sweep::Warning;
 use rc_sweep::WarningCode::{Coarse, Load};
@@ -40,7 +41,10 @@ pub(crate) fn before(surface: &LoadedSurface, contact: &ContactSetup) -> Vec<War
 
 /// Steepness and range of the surface.
 fn shape(surface: &LoadedSurface, contact: &ContactSetup) -> Shape {
-    let [rms_height, rms_slope] = surface.height_and_slope(contact.boundary);
+    // The border of a map that is not periodic is no slope of the surface.
+    let jumps = surface.map().is_some_and(|(map, _)| !BorderStep::of(map).is_periodic());
+    let boundary = if jumps { Boundary::Free } else { contact.boundary };
+    let [rms_height, rms_slope] = surface.height_and_slope(boundary);
     let cell = contact.units.cell();
     match surface.map() {
         Some((map, _)) => Shape { rms_slope, range: (map.max() - map.min()) * cell.side(), sides: cell.sides() },

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use rc_core::quantity::{count, digits, engineering};
 use rc_core::{Field, Grid, PeriodicCell};
-use rc_fractal::{Texture, height_and_slope_of_grid};
+use rc_fractal::{Texture, height_and_slope_of_grid, height_and_slope_of_patch};
 use rc_heights::suspicion::{Counter, Suspicions};
 use rc_heights::{BorderStep, Effect, HeightMap, Level, Periodic, Treatment, hann};
 use rc_sweep::Warning;
@@ -63,10 +63,12 @@ impl Shape {
         Self { rms_slope, range: RANGE_OF_WAVES * rms_height, sides }
     }
 
-    /// The shape of heights (m) in a cell, which continue across its borders.
+    /// The shape of heights (m) in a cell, which continue across its borders if they are periodic.
     pub(crate) fn of_heights(heights: &Field, cell: PeriodicCell) -> Self {
         // Slopes are per λ.
-        let [_, slope] = height_and_slope_of_grid(heights);
+        let is_periodic = BorderStep::of(heights).is_periodic();
+        let of = if is_periodic { height_and_slope_of_grid } else { height_and_slope_of_patch };
+        let [_, slope] = of(heights);
         Self { rms_slope: slope / cell.side(), range: heights.max() - heights.min(), sides: cell.sides() }
     }
 

@@ -318,3 +318,18 @@ fn an_area_error_that_no_grid_reaches_is_refused_with_one_that_is_reached() {
     let reached = rest.split(' ').next().expect("a number");
     assert_solved(&place.run(&[&scene[..], &[&format!("{reached}%")]].concat()));
 }
+
+#[test]
+fn flags_of_files_that_are_never_written_are_refused() {
+    let place = Place::new();
+    let sweep = ["sweep", "--waves", "8", "--grid", "64", "--pressures", "1e4", "--quiet", "--out", "s"];
+    for (args, expected) in [
+        (small("1e5", &["--elements"]), "elements: applies to the files of the results; give --out DIR"),
+        (small("1e5", &["--precision", "single"]), "precision: applies to the files of the results; give --out DIR"),
+        (small("1e5", &["--elements", "--method", "uniform", "--out", "r"]), "elements: the method uniform has no"),
+        ([&sweep[..], &["--elements"]].concat(), "elements: applies to the files of the rows; give --fields"),
+    ] {
+        assert_refused(&place.run(&args), expected);
+    }
+    assert!(!place.path("r").exists() && !place.path("s").exists());
+}

@@ -136,8 +136,8 @@ fn wrong_preparations_are_refused_and_nothing_is_written() {
     place.write("scene.toml", "waves = 8\ngrid = 64\n");
     for (flags, expected) in [
         (&["--despike", "1"][..], "despike: must be 3 or more"),
-        (&["--no-fill"], "needs a map without missing points (this one has 6)"),
-        (&["--no-fill", "--no-periodic"], "rc surface --fill laplace"),
+        (&["--no-fill"], "no_fill: 6 of 4602 points are missing, and a map with holes can be neither mirrored nor"),
+        (&["--no-fill", "--no-periodic"], "omit --no-fill, give --fill nearest or --fill lowest"),
         (&["--despike", "--no-despike"], "cannot be used with"),
         (&["--high-pass", "1"], "high_pass: must be from"),
         (&["--waves", "8"], "are for height maps"),
@@ -199,4 +199,37 @@ fn a_window_makes_no_contact_in_the_rim() {
         // The rim is 36 % of the area.
         assert!(rim < most, "{pressure} Pa: {rim} of the contact is in the rim");
     }
+}
+
+/// The spectrum of a mirrored map has cosines alone, so that a fit to it would be wrong.
+#[test]
+fn a_mirrored_map_has_the_spectrum_of_its_measured_part() {
+    let place = Place::new();
+    let waves = ["surface", "--waves", "96", "--roll-off", "4", "--hurst", "0.8", "--grid", "512", "--quiet"];
+    assert_solved(&place.run(&[&waves[..], &["--cell", "1e-3", "--out", "all"]].concat()));
+    let treated = |from: &str, how: &[&str], out: &str| {
+        assert_solved(&place.run(&[&["surface", from, "--quiet", "--out", out], how].concat()));
+        let output = place.run(&["inspect", out, "--json"]);
+        assert_solved(&output);
+        serde_json::from_slice::<Value>(&output.stdout).expect("valid JSON")
+    };
+    assert_solved(&place.run(&["surface", "all", "--quiet", "--out", "all.npy"]));
+    let part = ["--cell", "1e-3", "--heights", "all.npy", "--crop", "256"];
+    assert_solved(&place.run(&[&["surface", "--quiet", "--out", "part"], &part[..]].concat()));
+    let part = treated("part", &["--level", "plane"], "level");
+    let mirrored = treated("part", &["--level", "plane", "--periodic", "mirror"], "mirrored");
+    let number = |record: &Value, key: &str| record[key].as_f64().unwrap_or_else(|| panic!("no {key} in {record}"));
+    let (hurst, error) = (number(&mirrored, "hurst"), number(&mirrored, "hurst_error"));
+    assert!((hurst - 0.8).abs() <= 3.0 * error && error < 0.1, "H = {hurst} +- {error}");
+    for key in ["hurst", "hurst_error", "cut_off_wavelength", "roll_off_wavelength", "resolution_wavelength"] {
+        let [of_part, of_both] = [&part[key], &mirrored[key]].map(|value| value.as_f64().unwrap_or_default());
+        assert!((of_part - of_both).abs() <= 1e-9 * of_part, "{key}: {of_part}, mirrored {of_both}");
+    }
+    let psd = |record: &Value| record["spectrum"][10]["psd"].as_f64().expect("a spectrum");
+    assert!((psd(&mirrored) / psd(&part) - 1.0).abs() < 1e-9);
+    assert!((number(&mirrored["spectrum"][10], "waves") / number(&part["spectrum"][10], "waves") - 2.0).abs() < 1e-12);
+    assert!(mirrored["notes"].to_string().contains("measured part") && part.get("notes").is_none());
+    assert!(text(&place.run(&["inspect", "mirrored"]).stdout).contains("measured part"));
+    let copies = treated("mirrored", &["--repeat", "2x1"], "copies");
+    assert!(copies.get("notes").is_none(), "copies are left as they are");
 }

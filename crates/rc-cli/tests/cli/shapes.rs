@@ -210,12 +210,22 @@ fn another_body_is_mirrored_and_added() {
         let expected = map.at(n - 1 - ix, iy) - (at(ix).powi(2) + at(iy).powi(2)) / 2e-2;
         assert!((heights.at(ix, iy) - expected).abs() < 1e-18, "{ix}, {iy}");
     }
+    // A folder has its map and the size of it.
+    for (cell, folder) in [("1mm", "of-1mm"), ("2mm", "of-2mm")] {
+        assert_solved(&place.run(&["surface", "--heights", "a.npy", "--cell", cell, "--quiet", "--out", folder]));
+    }
+    solved(&place, &format!("a.npy --add of-1mm {words} of-folder"));
+    assert!(place.bytes("two/pressure.npy") == place.bytes("of-folder/pressure.npy"));
     rc_heights::npy::write(&place.path("small.npy"), &rough(16), 1.0).expect("a file");
     rc_heights::gsf::write(&place.path("wide.gsf"), &map, 1.0, [2e-3; 2]).expect("a file");
     for (other, expected) in [
         ("small.npy", "add: small.npy has 16 x 16 points, but the surface has 32 x 32; both bodies need the same grid"),
         ("wide.gsf", "add: wide.gsf is 2 mm x 2 mm, but the cell is 1 mm x 1 mm; both bodies need the same cell"),
         ("none.npy", "none.npy"),
+        (
+            "of-2mm",
+            "add: of-2mm/heights.npy is 2 mm x 2 mm, but the cell is 1 mm x 1 mm; both bodies need the same cell",
+        ),
     ] {
         let words = format!("solve a.npy --add {other} --cell 1mm --e-star 1e9 --pressure 1e5 --quiet");
         assert_refused(&place.run(&words.split(' ').collect::<Vec<_>>()), expected);

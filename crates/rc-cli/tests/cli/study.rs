@@ -174,6 +174,8 @@ fn what_a_study_cannot_compare_is_refused_before_it_is_solved() {
     let refused = place.run(&study(&["--force", "128mN", "--out", "t"]));
     assert_refused(&refused, "force: the maps of a study differ in size");
     assert_refused(&refused, "are --pressures 1e6");
+    let profile = place.run(&study(&["--line", "--pressures", "1e5", "--out", "t"]));
+    assert_refused(&profile, "line: a study is for maps; omit --line");
     // The lowest height in the hole is doubtful, but that treatment is one of the others.
     assert_solved(&place.run(&study(&[
         "--pressures",
