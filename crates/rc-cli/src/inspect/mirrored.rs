@@ -23,7 +23,8 @@ pub(super) fn measured_part(heights: &Field, origin: &MapOrigin) -> Option<Field
     let has_copies = origin.treatments[at..].iter().any(|step| step.starts_with("repeat"));
     let all = heights.grid();
     let is_row = all.ny() == 1;
-    if has_copies || !all.nx().is_multiple_of(2) || !is_row && !all.ny().is_multiple_of(2) || !is_symmetric(heights) {
+    let has_halves = all.nx().is_multiple_of(2) && (is_row || all.ny().is_multiple_of(2));
+    if has_copies || !has_halves || !is_symmetric(heights) {
         return None;
     }
     let (nx, ny) = (all.nx() / 2, if is_row { 1 } else { all.ny() / 2 });

@@ -69,11 +69,11 @@ impl ResultSurface {
             return Err(CliError::input("the surface is flat"));
         }
         let summary = &result.summary;
+        let source = summary.source.clone().or_else(|| surface.origin.clone());
         let record = SurfaceRecord {
             rms_height: summary.rms_height,
             rms_slope: summary.rms_slope,
-            source: summary.source.clone().or_else(|| surface.origin.clone()),
-            ..SurfaceRecord::of(&coarse, side, surface.moments(&coarse))
+            ..SurfaceRecord::of_source(&coarse, side, surface.moments(&coarse), source)
         };
         let shift = summary.penetration - summary.h_max;
         let sections = full.as_ref().map_or_else(Vec::new, |heights| sections(heights, result, shift));

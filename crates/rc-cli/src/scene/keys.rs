@@ -162,7 +162,7 @@ pub struct SurfaceKeys {
     #[arg(long, hide_short_help = true, value_name = "M", value_parser = length::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
     pub wave_amplitude: Option<f64>,
-    /// Height map of the other body, or a folder with one, mirrored along x and added
+    /// Height map of the other body, mirrored along x and added
     ///
     /// Both maps are positive towards the other body, and have the same grid and cell. The flags for files are for both.
     #[arg(long, value_name = "FILE")]

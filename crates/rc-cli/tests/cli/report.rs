@@ -182,7 +182,7 @@ fn a_browser_draws_the_page() {
     assert_eq!(page.matches("<div class=\"map\"").count(), 4, "maps");
     let charts = "two sections, two of both bodies, spectrum, heights, material ratio, stress and spots";
     assert_eq!(page.matches("<svg").count(), 9, "{charts}");
-    for text in ["3-D view", "download", "κ = ", "spectrum", "Hurst exponent", "through the maximum pressure"] {
+    for text in ["3-D view", "download", "κ = ", "spectrum", "through the maximum pressure"] {
         assert!(page.contains(text), "{text} is not on the page");
     }
 }
@@ -215,7 +215,8 @@ fn the_page_of_a_result_has_its_surface_and_sections_through_both_bodies() {
         assert!((elastic - rigid - expected).abs() < 1e-6 * gap.max(), "{ix}: {rigid}, {elastic}, gap {expected}");
         assert_eq!(section["contact"][ix], pressure.values()[i] > 0.0);
     }
-    assert!(surface["law"][1].as_str().is_some_and(|law| law.starts_with("Hurst exponent H = ")), "{surface}");
+    // Eight waves are too few for a power law.
+    assert!(surface["law"].is_null(), "{}", surface["law"]);
     assert!(surface["material_ratio"].as_array().is_some_and(|curve| curve.len() > 50));
     assert!(surface["parameters"].to_string().contains("Sk, Spk, Svk"));
     assert!(surface["spectrum"].as_array().is_some_and(|spectrum| spectrum.len() > 3));
