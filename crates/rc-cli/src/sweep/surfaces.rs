@@ -308,6 +308,7 @@ fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
         ("--pressure", contact.pressure.is_some()),
         ("--penetration", contact.penetration.is_some()),
         ("--force", contact.force.is_some()),
+        ("--vary force", args.vary.iter().any(|variation| variation.key() == "force")),
     ];
     let given: Vec<&str> = given.iter().filter(|(_, given)| *given).map(|(flag, _)| *flag).collect();
     if let [first, second, ..] = given[..] {

@@ -58,6 +58,11 @@ impl Variation {
         Self::checked(key, List::Values(values))
     }
 
+    /// The key, as in scene files.
+    pub(super) fn key(&self) -> &str {
+        &self.key
+    }
+
     fn checked(key: String, list: List) -> Result<Self, String> {
         if let Some((_, flag)) = NOT_VARIED.iter().find(|(name, _)| *name == key) {
             return Err(format!("{key} has a list of its own; give {flag}"));

@@ -39,6 +39,7 @@ fn varied_keys_have_columns_and_rows_are_those_of_single_solves() {
     assert_refused(&run(&place, "--pressures 1e5 --vary pressure=1,2 --out t"), "give --pressures");
     assert_refused(&run(&place, "--pressures 1e5 --vary hardness=1mm --out t"), "which is a length");
     // A list of forces, each with its mean pressure on the cell of 1e-4 m².
+    assert_refused(&run(&place, "--pressure 1e5 --vary force=10N,20N --out t"), "a sweep has one control");
     assert_solved(&run(&place, "--vary force=10N,20N --out forces"));
     let rows = table(&place.path("forces"));
     assert_eq!(column(&rows, "force"), ["10.0", "20.0"]);
