@@ -4,6 +4,7 @@ use rc_core::quantity::{digits, engineering};
 use rc_sweep::{Cells, SweepRows};
 use serde_json::Value;
 
+use crate::curves::means::Mean;
 use crate::text;
 
 /// Minimum number of seeds of a mean. The standard deviation of two values is hardly known.
@@ -48,12 +49,11 @@ fn problem(cells: &Cells) -> String {
 
 /// The mean with its standard error, and the range.
 fn line(name: &str, areas: &[f64]) -> String {
-    let n = areas.len() as f64;
-    let mean = areas.iter().sum::<f64>() / n;
-    let variance = areas.iter().map(|area| (area - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    let values: Vec<[f64; 2]> = areas.iter().map(|area| [*area, 0.0]).collect();
+    let Some(mean) = Mean::of(&values) else { return String::new() };
     let [least, most] = [f64::min as fn(f64, f64) -> f64, f64::max]
         .map(|of| digits(100.0 * areas.iter().copied().fold(areas[0], of), 3));
-    let mean = text::with_error(100.0 * mean, 100.0 * (variance / n).sqrt());
+    let mean = text::with_error(100.0 * mean.value, 100.0 * mean.error());
     format!("  {name}: contact area ({mean}) %, from {least} to {most} %, of {} seeds\n", areas.len())
 }
 

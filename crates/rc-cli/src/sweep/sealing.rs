@@ -10,6 +10,7 @@ use rc_sweep::{Sweep, SweepRow, files, to_json};
 use serde::Serialize;
 
 use super::surfaces::Surfaces;
+use crate::curves::means::Mean;
 use crate::error::CliError;
 use crate::run::stop::Stop;
 use crate::scene::keys::ContactKeys;
@@ -205,16 +206,12 @@ impl Problem {
         // Without those beyond the loads the mean would be too small.
         let of_surface = |pair: &[SurfaceSeal]| {
             let axes: Option<Vec<f64>> = pair.iter().map(|seal| seal.pressure).collect();
-            axes.map(|axes| axes.iter().sum::<f64>() / axes.len() as f64)
+            axes.map(|axes| [axes.iter().sum::<f64>() / axes.len() as f64, 0.0])
         };
-        let Some(found) = self.surfaces.chunks(AXES.len()).map(of_surface).collect::<Option<Vec<f64>>>() else {
-            return;
-        };
-        let n = found.len() as f64;
-        let mean = found.iter().sum::<f64>() / n;
-        let variance = found.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        self.pressure = Some(mean);
-        self.standard_error = (found.len() >= FEWEST).then(|| (variance / n).sqrt());
+        let found = self.surfaces.chunks(AXES.len()).map(of_surface).collect::<Option<Vec<[f64; 2]>>>();
+        let Some((mean, n)) = found.and_then(|found| Some((Mean::of(&found)?, found.len()))) else { return };
+        self.pressure = Some(mean.value);
+        self.standard_error = mean.standard_error.filter(|_| n >= FEWEST);
     }
 
     /// The sealing pressure as text.

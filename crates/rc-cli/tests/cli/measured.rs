@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use crate::support::{MATERIAL, Place, assert_refused, assert_solved, bumps, codes, f8, map, npy, text};
+use crate::support::{
+    MATERIAL, Place, SURFACE_PICTURES, assert_refused, assert_solved, bumps, codes, f8, map, npy, text,
+};
 
 /// Path of a file of data/formats/.
 fn sample(name: &str) -> String {
@@ -208,16 +210,7 @@ fn inspect_draws_a_map_of_any_shape() {
     let output = place.run(&["inspect", "map.xyz", "--unit", "um", "--out", "look"]);
     assert_solved(&output);
     assert!(text(&output.stdout).contains("8 µm by 6 µm with 8 x 6 elements"), "{}", text(&output.stdout));
-    let pictures = [
-        "distribution.png",
-        "distribution.svg",
-        "material_ratio.png",
-        "material_ratio.svg",
-        "spectrum.png",
-        "spectrum.svg",
-        "surface.png",
-    ];
-    assert_eq!(place.names("look"), pictures);
+    assert_eq!(place.names("look"), SURFACE_PICTURES);
 }
 
 #[test]

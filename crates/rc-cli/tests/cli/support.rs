@@ -27,6 +27,17 @@ pub(crate) fn small<'a>(pressure: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [&SMALL[..], &["--pressure", pressure], more].concat()
 }
 
+/// The pictures of a surface that `rc inspect --out` and `rc plot` write.
+pub(crate) const SURFACE_PICTURES: [&str; 7] = [
+    "distribution.png",
+    "distribution.svg",
+    "material_ratio.png",
+    "material_ratio.svg",
+    "spectrum.png",
+    "spectrum.svg",
+    "surface.png",
+];
+
 /// A folder in which commands run.
 pub(crate) struct Place(TempDir);
 

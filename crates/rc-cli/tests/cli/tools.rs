@@ -1,6 +1,6 @@
 //! `rc surface`, `rc inspect`, `rc plot` and help.
 
-use crate::support::{Place, assert_refused, assert_solved, small, text};
+use crate::support::{Place, SURFACE_PICTURES, assert_refused, assert_solved, small, text};
 
 #[test]
 fn a_surface_is_converted_without_loss() {
@@ -51,17 +51,8 @@ fn inspect_measures_what_surface_made() {
         assert_solved(&output);
         assert_eq!(serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("JSON"), made);
     }
-    let pictures = [
-        "distribution.png",
-        "distribution.svg",
-        "material_ratio.png",
-        "material_ratio.svg",
-        "spectrum.png",
-        "spectrum.svg",
-        "surface.png",
-    ];
     assert_solved(&place.run(&["plot", "s", "--out", "pictures"]));
-    assert_eq!(place.names("pictures"), pictures);
+    assert_eq!(place.names("pictures"), SURFACE_PICTURES);
     assert_solved(&place.run(&["report", "s"]));
     assert!(text(&place.bytes("s/report.html")).contains("\"kind\":\"surface\""), "not the page of a surface");
     assert_refused(&place.run(&["inspect", "s/heights.npy", "--cell", "-1"]), "cell");
