@@ -170,6 +170,12 @@ impl Grid {
         self.squared_waves(kx, ky).sqrt()
     }
 
+    /// Wave vector q of the wave with `kx` and `ky` periods per side, in radians per λ. Periods may be negative.
+    #[must_use]
+    pub fn angular_wave(self, kx: i64, ky: i64) -> DVec2 {
+        std::f64::consts::TAU * DVec2::new(kx as f64, ky as f64 / self.cell_ratio)
+    }
+
     /// Squared wavenumber |k|² of the wave with `kx` and `ky` periods per side.
     #[must_use]
     pub fn squared_waves(self, kx: usize, ky: usize) -> f64 {

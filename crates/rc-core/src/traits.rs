@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
+use num_complex::Complex64;
+
 use crate::grid::Grid;
+use crate::sliding::Sliding;
 use crate::split::SplitByScale;
 
 /// Eigenvalue of an elastic operator on one grid, as a function of (|kx|, |ky|).
@@ -10,6 +13,11 @@ use crate::split::SplitByScale;
 /// The wave has |kx| and |ky| periods per side. Arguments go up to half the number of elements along each side.
 /// [`Kernel::free_response`] uses the same type for a displacement as a function of a distance.
 pub type Symbol<'a> = Box<dyn Fn(usize, usize) -> f64 + Send + Sync + 'a>;
+
+/// Complex eigenvalue of a solid under a sliding surface, as a function of (kx, ky), which may be negative.
+///
+/// The displacement is real, so the wave (-kx, -ky) has the conjugate value.
+pub type ComplexSymbol<'a> = Box<dyn Fn(i64, i64) -> Complex64 + Send + Sync + 'a>;
 
 /// What lies beyond the borders of the heights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -114,11 +122,12 @@ impl Default for EdgeBias {
 /// The solvers minimise an elastic energy, so the symbol is real and positive. They also assume equal values for a wave
 /// and its mirror images.
 ///
-/// - **Viscoelastic solids** have a complex symbol at each frequency. The displacement lags behind the pressure, and
-///   there is no energy to minimise. Instead, step in time. The response within a step is elastic, and its symbol is
-///   real. The displacement that remains from earlier steps is known. Subtract it from the heights.
-/// - **Shifted responses**, for example of a moving load, also have a complex symbol, with a factor exp(2πi k·d).
-///   Instead, move the heights.
+/// - **Viscoelastic solids** under a surface that slides steadily have a complex symbol: the displacement lags behind
+///   the pressure. [`Kernel::sliding_symbol`] gives it, and [`Kernel::symbol`] then is that of the relaxed solid. The
+///   real part must be positive, which is so for every material that dissipates. Other histories of load need steps in
+///   time: the response within a step is elastic, and the displacement that remains from earlier steps is subtracted
+///   from the heights.
+/// - **Shifted responses** have a complex symbol with a factor exp(2πi k·d). Instead, move the heights.
 /// - **Anisotropic solids** respond differently along different directions. Symbols here are even in kx and in ky. The
 ///   axes of an anisotropic solid must therefore be the axes of the cell. On a [square](Grid::is_square) grid, symbols
 ///   are also symmetric in kx and ky. The grid must therefore not be square: the cell is a rectangle, or the numbers of
@@ -152,6 +161,26 @@ pub trait Kernel: Sync {
     /// The symbol is even in kx and in ky, so it is only evaluated for 0 ≤ kx ≤ nx/2 and 0 ≤ ky ≤ ny/2. On a
     /// [square](Grid::is_square) grid it is symmetric in kx and ky, so it may be evaluated for ky ≥ kx only.
     fn symbol(&self, grid: Grid) -> Symbol<'_>;
+
+    /// The symbol for steady sliding, in units of λ/E*, if a surface slides over a solid that relaxes.
+    ///
+    /// E* is the relaxed modulus, and [`Kernel::symbol`] the symbol at rest. `None` means that nothing slides.
+    fn sliding_symbol(&self, grid: Grid) -> Option<ComplexSymbol<'_>> {
+        let _ = grid;
+        None
+    }
+
+    /// The symbol of a solid of this shape whose material relaxes while a surface slides over it.
+    ///
+    /// A kernel whose waves are those of the continuous solid multiplies its symbol by the compliance of the wave, as
+    /// the default does. A kernel that sums over aliases has the compliance of each alias inside the sum.
+    fn symbol_while<'a>(&'a self, sliding: &Sliding, grid: Grid) -> ComplexSymbol<'a> {
+        let (symbol, sliding) = (self.symbol(grid), sliding.clone());
+        Box::new(move |kx, ky| {
+            symbol(kx.unsigned_abs() as usize, ky.unsigned_abs() as usize)
+                * sliding.compliance(grid.angular_wave(kx, ky))
+        })
+    }
 
     /// Displacement of the cell under a uniform pressure of E*, in λ.
     ///

@@ -19,7 +19,7 @@ use realfft::{ComplexToReal, RealToComplex};
 use rustfft::Fft;
 use rustfft::num_complex::Complex;
 
-use crate::{SymbolTable, TransformReal};
+use crate::{SymbolTable, TransformReal, WaveTable};
 
 /// Number of rows in a block of a [`Convolution`]. A convolution requests and returns one block at a time. The last
 /// block of a grid may have fewer rows.
@@ -200,6 +200,16 @@ impl<T: TransformReal> Convolution<T> {
     /// Second pass, which transforms columns, multiplies by `symbol`, and transforms back. `symbol` is the table for
     /// the same grid.
     pub fn apply_symbol(&mut self, symbol: &SymbolTable<T>) {
+        self.for_each_column(|kx, column| scale_column(column, symbol.column(kx)));
+    }
+
+    /// Second pass with a complex symbol: as [`Convolution::apply_symbol`].
+    pub fn apply_waves(&mut self, symbol: &WaveTable<T>) {
+        self.for_each_column(|kx, column| symbol.scale(kx, column));
+    }
+
+    /// Transforms columns, calls `scale` with the index and the waves of each, and transforms back.
+    fn for_each_column(&mut self, scale: impl Fn(usize, &mut [Complex<T>]) + Sync) {
         let (n_rows, [nx, ny]) = (self.grid.ny(), self.period);
         let n_columns = nx / 2 + 1;
         let (forward, inverse, workspaces) = (&self.column_forward, &self.column_inverse, &self.workspaces);
@@ -222,7 +232,7 @@ impl<T: TransformReal> Convolution<T> {
                 let column = &mut column[..ny];
                 column[n_rows..].fill(Complex::new(T::zero(), T::zero()));
                 forward.process_with_scratch(column, scratch);
-                scale_column(column, symbol.column(first_column + column_idx));
+                scale(first_column + column_idx, column);
                 inverse.process_with_scratch(column, scratch);
             }
             scatter(panel, tiles, width);

@@ -8,6 +8,7 @@
 //! | [`Convolution`] | field → inverse FFT( symbol · FFT(field) ), repeatedly on one grid, in `f32` or `f64` |
 //! | [`LineConvolution`] | the same for a single row |
 //! | [`SymbolTable`] | table of the symbol of a convolution |
+//! | [`WaveTable`] | the same for a complex symbol |
 //! | [`half_plane_values`] | forward transform of a real field, then a number for every wave of the half plane kx ≥ 0 |
 //! | [`field_of_columns`] | inverse transform of waves in the columns kx = 0, 1, … to a real field |
 //! | [`field_of_half_plane`] | inverse of a forward transform with [`half_plane_values`] |
@@ -41,6 +42,7 @@ mod lines;
 mod plan;
 mod real_by_complex;
 mod symbol_table;
+mod wave_table;
 
 pub use convolution::{BLOCK_ROWS, Convolution};
 pub use factors::has_small_factors;
@@ -53,3 +55,4 @@ pub use realfft::{ComplexToReal, RealToComplex};
 pub use rustfft::Fft;
 pub use rustfft::num_complex::{Complex, Complex64};
 pub use symbol_table::SymbolTable;
+pub use wave_table::WaveTable;

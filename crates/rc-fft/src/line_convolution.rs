@@ -5,7 +5,7 @@ use std::sync::Arc;
 use realfft::{ComplexToReal, RealToComplex};
 use rustfft::num_complex::Complex;
 
-use crate::{SymbolTable, TransformReal};
+use crate::{SymbolTable, TransformReal, WaveTable};
 
 /// Plans and buffers of convolutions `values -> inverse FFT( symbol · FFT(values) )` of one row.
 ///
@@ -45,13 +45,33 @@ impl<T: TransformReal> LineConvolution<T> {
     /// # Panics
     /// When the table is for another grid.
     pub fn apply(&mut self, symbol: &SymbolTable<T>) {
-        let Self { forward, inverse, values, spectrum, scratch } = self;
         let symbol = symbol.of_line();
-        assert_eq!(symbol.len(), spectrum.len(), "waves of the table");
+        assert_eq!(symbol.len(), self.spectrum.len(), "waves of the table");
+        self.transform(|spectrum| {
+            for (wave, &factor) in spectrum.iter_mut().zip(symbol) {
+                *wave = wave.scale(factor);
+            }
+        });
+    }
+
+    /// [`LineConvolution::apply`] with a complex symbol.
+    ///
+    /// # Panics
+    /// When the table is for another grid.
+    pub fn apply_waves(&mut self, symbol: &WaveTable<T>) {
+        let symbol = symbol.of_line();
+        assert_eq!(symbol.len(), self.spectrum.len(), "waves of the table");
+        self.transform(|spectrum| {
+            for (wave, &factor) in spectrum.iter_mut().zip(symbol) {
+                *wave = *wave * factor;
+            }
+        });
+    }
+
+    fn transform(&mut self, scale: impl Fn(&mut [Complex<T>])) {
+        let Self { forward, inverse, values, spectrum, scratch } = self;
         forward.process_with_scratch(values, spectrum, scratch).expect("buffers have the lengths of the plan");
-        for (wave, &factor) in spectrum.iter_mut().zip(symbol) {
-            *wave = wave.scale(factor);
-        }
+        scale(spectrum);
         // These parts are zero up to rounding, but the plan requires exact zeros.
         spectrum[0].im = T::zero();
         if values.len().is_multiple_of(2) {

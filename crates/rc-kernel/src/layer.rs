@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use rc_core::{EdgeBias, Grid, Kernel, Symbol};
+use rc_core::{Complex64, ComplexSymbol, DVec2, EdgeBias, Grid, Kernel, Sliding, Symbol};
 
 use crate::{Love, Spectral};
 
@@ -130,6 +130,32 @@ impl Kernel for LoveLayer {
                     // Aliases of the zero wave along both axes are omitted, because the sinc of a whole wave is zero.
                     if q > 0.0 && q < farthest {
                         sum += 2.0 / q * layer.excess(q * layer.thickness) * wx * wy;
+                    }
+                }
+            }
+            sum
+        })
+    }
+
+    fn symbol_while<'a>(&'a self, sliding: &Sliding, grid: Grid) -> ComplexSymbol<'a> {
+        let (layer, half_space, spacing) = (self.0, Love.symbol_while(sliding, grid), grid.spacing());
+        let (farthest, sliding) = (NEGLIGIBLE_XI / layer.thickness, sliding.clone());
+        let along = |k: usize, n: usize, side: f64| Aliases::new(k, n, side, farthest);
+        let columns: Vec<Aliases> = (0..=grid.nx() / 2).map(|k| along(k, grid.nx(), spacing.x)).collect();
+        let rows: Vec<Aliases> = (0..=grid.ny() / 2).map(|k| along(k, grid.ny(), spacing.y)).collect();
+        Box::new(move |kx, ky| {
+            if kx == 0 && ky == 0 {
+                return Complex64::ZERO;
+            }
+            let [sx, sy] = [kx, ky].map(|k| if k < 0 { -1.0 } else { 1.0 });
+            let mut sum = half_space(kx, ky);
+            for (qy, wy) in rows[ky.unsigned_abs() as usize].terms() {
+                for (qx, wx) in columns[kx.unsigned_abs() as usize].terms() {
+                    let q = DVec2::new(sx * qx, sy * qy);
+                    let length = q.length();
+                    if length > 0.0 && length < farthest {
+                        let excess = layer.excess(length * layer.thickness);
+                        sum += sliding.compliance(q) * (2.0 / length * excess * wx * wy);
                     }
                 }
             }

@@ -18,6 +18,7 @@
 //! | [`HalfSpace`] | the split of [`Love`] and [`FreeLove`] ([`rc_core::SplitByScale`]) | `half_space.rs` |
 //! | [`Spectral`] | Eq. 2-3 for each Fourier wave: the symbol of the continuous half-space, without aliases | `spectral.rs` |
 //! | [`FreeLove`] | Eq. 4-5 on an infinite half-space, without images | `free_love.rs`, rectangles in `love.rs` |
+//! | [`Viscoelastic`] | any of these solids, of a material that relaxes ([`Relaxation`]), under a sliding surface | `viscoelastic.rs`, [`Love`] in `love_sliding.rs` |
 //! | [`LoveLayer`], [`SpectralLayer`] | [`Love`] and [`Spectral`] for a layer on a rigid base ([`Layer`]) | `layer.rs` |
 //!
 //! d_j of Eq. 5 and 6 is the half side of an element, `half_side` here.
@@ -47,14 +48,17 @@ mod half_space;
 mod lattice;
 mod layer;
 mod love;
+mod love_sliding;
 mod love_symbol;
 mod multipoles;
 mod periodic;
+mod relaxation;
 mod shells;
 mod spectral;
 mod split;
 mod square;
 mod truncated;
+mod viscoelastic;
 
 pub use alias_sum::love_alias_sum;
 pub use bessel::bessel_series;
@@ -66,15 +70,17 @@ pub use lattice::{LATTICE_CONSTANT, ewald_coefficient, ewald_phi};
 pub use layer::{Layer, LoveLayer, SpectralLayer, THINNEST_LAYER};
 pub use love::{love_displacement, love_rectangle_displacement};
 pub use periodic::{PeriodicLove, PeriodicSource};
+pub use relaxation::{MaterialError, Relaxation};
 pub use shells::MAX_SHELLS;
 pub use spectral::Spectral;
 pub use split::{CoarseElement, CoarseFilter, Filter, ScaleSplit, SplitParams, Stencil, UnevenFilter};
 pub use truncated::{LoadForm, shells_for, truncated_coefficient, truncation_error_bound};
+pub use viscoelastic::Viscoelastic;
 
 use std::sync::Arc;
 
 use love_symbol::LoveSymbol;
-use rc_core::{Grid, Kernel, SplitByScale, Symbol};
+use rc_core::{ComplexSymbol, Grid, Kernel, Sliding, SplitByScale, Symbol};
 
 /// The kernel of the paper's elements.
 ///
@@ -99,6 +105,10 @@ impl Kernel for Love {
     fn symbol(&self, grid: Grid) -> Symbol<'_> {
         let symbol = LoveSymbol::new(grid);
         Box::new(move |kx, ky| symbol.eigenvalue(kx, ky))
+    }
+
+    fn symbol_while<'a>(&'a self, sliding: &Sliding, grid: Grid) -> ComplexSymbol<'a> {
+        love_sliding::symbol(sliding, grid)
     }
 
     fn split(&self) -> Option<&dyn SplitByScale> {
