@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use glam::DVec2;
 use num_complex::Complex64;
 
 use crate::grid::Grid;
@@ -162,9 +163,14 @@ pub trait Kernel: Sync {
     /// [square](Grid::is_square) grid it is symmetric in kx and ky, so it may be evaluated for ky ≥ kx only.
     fn symbol(&self, grid: Grid) -> Symbol<'_>;
 
-    /// The symbol for steady sliding, in units of λ/E*, if a surface slides over a solid that relaxes.
+    /// The velocity of a surface that slides steadily over the solid, in λ per unit of time. `None` at rest.
+    fn sliding_velocity(&self) -> Option<DVec2> {
+        None
+    }
+
+    /// The symbol for steady sliding, in units of λ/E*, if the kernel has a [`Kernel::sliding_velocity`].
     ///
-    /// E* is the relaxed modulus, and [`Kernel::symbol`] the symbol at rest. `None` means that nothing slides.
+    /// E* is the relaxed modulus, and [`Kernel::symbol`] the symbol at rest.
     fn sliding_symbol(&self, grid: Grid) -> Option<ComplexSymbol<'_>> {
         let _ = grid;
         None

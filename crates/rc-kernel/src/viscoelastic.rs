@@ -55,6 +55,10 @@ impl<K: Kernel + Clone + Send + Sync + 'static> Kernel for Viscoelastic<K> {
         self.relaxed.symbol(grid)
     }
 
+    fn sliding_velocity(&self) -> Option<DVec2> {
+        Some(self.sliding.velocity())
+    }
+
     fn sliding_symbol(&self, grid: Grid) -> Option<ComplexSymbol<'_>> {
         Some(self.relaxed.symbol_while(&self.sliding, grid))
     }

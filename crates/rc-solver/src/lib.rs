@@ -36,13 +36,14 @@ mod levels;
 mod paper;
 mod parallel;
 mod problem;
+mod sliding;
 mod solution;
 mod solve;
 mod tiles;
 
 pub use crate::descent::certificate::Certificate;
 pub use crate::descent::contact_element::ContactElement;
-pub use crate::descent::info::{LevelInfo, LevelValues, SolveInfo, Status};
+pub use crate::descent::info::{Friction, LevelInfo, LevelValues, SolveInfo, Status};
 pub use crate::grid::dense::{solve_dense, solve_dense_with_hardness};
 pub use crate::grid::direct_sum::DirectSum;
 pub use crate::grid::uniform_operator::UniformOperator;

@@ -11,6 +11,7 @@
 //! | [`elliptic`] | ellipsoidal peak on an infinite half-space | exact |
 //! | [`cone`] | cone on an infinite half-space | exact |
 //! | [`thin_layer`] | sphere on a layer bonded to a rigid base | layer thin relative to the contact |
+//! | [`hunter`] | cylinder that slides over a viscoelastic half-plane | exact for one relaxation time |
 //! | [`westergaard`] | one-dimensional wave | exact at every load |
 //! | [`bisinusoidal`] | two-dimensional wave | both ends of the load range |
 //! | [`full_contact`] | any band-limited surface | exact, above a load |
@@ -42,6 +43,7 @@ pub mod cone;
 pub mod elliptic;
 pub mod full_contact;
 pub mod hertz;
+pub mod hunter;
 pub mod lattice;
 pub mod persson;
 pub mod persson_gap;

@@ -73,7 +73,7 @@ impl Descent<'_> {
     }
 
     /// Forgets the last direction and the choice of active elements.
-    fn start_afresh(&mut self) {
+    pub(crate) fn start_afresh(&mut self) {
         self.curvature = f64::INFINITY;
         self.is_chosen = false;
     }

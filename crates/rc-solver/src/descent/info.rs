@@ -53,6 +53,31 @@ pub struct LevelValues {
     pub penetration: f64,
 }
 
+/// Friction of a surface that slides steadily over a solid that relaxes.
+///
+/// The force on the surface is against its velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    /// μ, the ratio of the force against the velocity to the load: -⟨p ∂h⟩/σ0 along the velocity.
+    pub coefficient: f64,
+    /// 95 % error of [`Friction::coefficient`], from its difference to [`Friction::of_displacement`].
+    pub error: f64,
+    /// Proven bound on the error that the iteration leaves on this grid: √G ‖∂h‖/σ0, in the norm of (Re L)⁻¹.
+    pub bound: f64,
+    /// μ from the displacement, -⟨p ∂v⟩/σ0.
+    pub of_displacement: f64,
+    /// The same as [`Friction::coefficient`] across the velocity, positive to its left.
+    pub lateral: f64,
+    /// Dissipated power per nominal area, in E* λ per unit of time.
+    pub power: f64,
+    /// Maximum loss tangent of the waves of the grid.
+    pub max_loss_tangent: f64,
+    /// Directions of GMRES on the finest grid.
+    pub gmres_iterations: usize,
+    /// Rounds with the storage modulus on the finest grid.
+    pub storage_rounds: usize,
+}
+
 /// How a solution was found, and how good it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolveInfo {
@@ -82,6 +107,8 @@ pub struct SolveInfo {
     ///
     /// `None` without such a level, or if it does not have half the elements along both axes.
     pub coarser: Option<LevelValues>,
+    /// Friction under a sliding surface. `None` at rest.
+    pub friction: Option<Friction>,
 }
 
 impl SolveInfo {

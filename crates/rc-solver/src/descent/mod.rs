@@ -17,6 +17,7 @@ pub(crate) mod contact_element;
 pub(crate) mod descending_round;
 pub(crate) mod directions;
 pub(crate) mod gap;
+pub(crate) mod gmres;
 pub(crate) mod info;
 pub(crate) mod layout;
 pub(crate) mod load;

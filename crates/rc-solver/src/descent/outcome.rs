@@ -68,6 +68,7 @@ impl Outcome {
             elastic_energy: self.elastic_energy,
             levels,
             coarser,
+            friction: None,
         }
     }
 }

@@ -13,11 +13,11 @@ use crate::parallel;
 use crate::problem::control::Control;
 
 /// The active elements of a round.
-struct ActiveSet {
+pub(crate) struct ActiveSet {
     /// Number of active elements, in units of the smallest.
-    n: f64,
+    pub(crate) n: f64,
     /// Whether the mean over the active elements stays as it is.
-    fixed_mean: bool,
+    pub(crate) fixed_mean: bool,
     /// Mean of the last direction over the active elements.
     direction_mean: f64,
 }
@@ -32,7 +32,7 @@ impl Descent<'_> {
     ///
     /// # Errors
     /// [`Stopped`] when the observer wants to stop.
-    pub(super) fn round(&mut self, steps: usize, sums: &GapSums, observer: &dyn Observer) -> Result<GapSums, Stopped> {
+    pub(crate) fn round(&mut self, steps: usize, sums: &GapSums, observer: &dyn Observer) -> Result<GapSums, Stopped> {
         // Without a start, contact is at first too large at any load. Of operators of the caller nothing is known. Free
         // borders bend the gap of a start over long distances, so whole regions would join and press.
         let is_periodic = self.boundary() == Boundary::Periodic;
@@ -63,7 +63,7 @@ impl Descent<'_> {
     }
 
     /// Writes the residual of the active elements.
-    fn begin_round(&mut self) -> ActiveSet {
+    pub(crate) fn begin_round(&mut self) -> ActiveSet {
         let (len, gradient) = (self.layout.len(), self.gradient());
         // The choice before clipping is kept only if residuals are extended.
         let is_chosen = std::mem::replace(&mut self.is_chosen, self.operators.corrections.extends());

@@ -130,7 +130,7 @@ impl Descent<'_> {
     ///
     /// `sums` are those of the last finished round. The gap is computed afresh only for a certificate, and only if it
     /// is not fresh already.
-    fn stopped(&mut self, goal: Goal, mut sums: GapSums) -> Outcome {
+    pub(crate) fn stopped(&mut self, goal: Goal, mut sums: GapSums) -> Outcome {
         let is_fresh = self.info.iterations == 0 && !self.has_gap;
         if goal.certify.is_some() && !is_fresh {
             sums = self.refresh();
@@ -138,11 +138,16 @@ impl Descent<'_> {
         self.unfinished(goal, &sums)
     }
 
-    fn unfinished(&self, goal: Goal, sums: &GapSums) -> Outcome {
+    pub(crate) fn unfinished(&self, goal: Goal, sums: &GapSums) -> Outcome {
         let mut outcome = self.outcome(sums, false);
         // The goal may be smaller than the bound to certify.
         outcome.converged = goal.certify.is_some_and(|bound| outcome.certificate.meets(bound));
         outcome
+    }
+
+    /// The error of the pressure with these sums, in units of the problem's length.
+    pub(crate) fn error(&self, sums: &GapSums) -> f64 {
+        sums.error(self.problem, self.n_cell())
     }
 
     /// Computes the gap from a fresh application of L, in double precision.
@@ -157,7 +162,7 @@ impl Descent<'_> {
         self.meet_penetration(sums)
     }
 
-    fn tell(&self, watch: &DescentObserver<'_>, overlaps: [f64; 2], sums: &GapSums) {
+    pub(crate) fn tell(&self, watch: &DescentObserver<'_>, overlaps: [f64; 2], sums: &GapSums) {
         let [error, tolerance] = overlaps.map(|overlap| self.problem.measure.shown(overlap));
         let (iteration, n_contact) = (self.info.iterations, sums.n_in_contact() as usize);
         watch.observer.notify(&Event::Iteration { iteration, error, tolerance, n_contact });

@@ -53,7 +53,7 @@ impl DepthSearch {
 
 impl Descent<'_> {
     /// Computes the first pressure and gap.
-    pub(super) fn start(&mut self) -> GapSums {
+    pub(crate) fn start(&mut self) -> GapSums {
         let n_cell = self.n_cell();
         let present = mean_pressure(n_cell, &self.layout, &self.pressure);
         let usable = self.has_start && present > 0.0;

@@ -15,7 +15,7 @@ use crate::parallel;
 pub(crate) struct Stopped;
 
 /// Ends a round if the observer wants to stop.
-pub(super) fn unless_stopped(observer: &dyn Observer) -> Result<(), Stopped> {
+pub(crate) fn unless_stopped(observer: &dyn Observer) -> Result<(), Stopped> {
     if observer.should_stop() { Err(Stopped) } else { Ok(()) }
 }
 
@@ -23,7 +23,7 @@ impl Descent<'_> {
     /// Makes the pressure of an unfinished round admissible: no tension, nothing above the hardness, the whole load.
     ///
     /// The gap does not follow.
-    pub(super) fn admit(&mut self) {
+    pub(crate) fn admit(&mut self) {
         if self.info.iterations == 0 {
             return;
         }

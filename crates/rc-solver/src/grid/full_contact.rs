@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 use rc_core::{Field, Kernel};
-use rc_fft::SymbolTable;
 
 use crate::descent::certificate::{Certificate, Residuals};
 use crate::descent::info::{GridSolution, LevelInfo, SolveInfo, Status};
 use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
+use crate::grid::factors::Factors;
 use crate::grid::operators::SymbolOperator;
 use crate::grid::uniform_operator::UniformOperator;
 use crate::problem::checked::{BELOW_FULL, Problem};
@@ -88,8 +88,7 @@ pub(crate) fn solve(
 /// L⁻¹ h, ready to be read.
 fn fluctuation(heights: &Field, kernel: &dyn Kernel, mean: f64) -> SymbolOperator {
     let grid = heights.grid();
-    let inverse = SymbolTable::<f64>::new(grid, kernel.symbol(grid)).inverse(grid);
-    let mut inverse = SymbolOperator::new(grid, inverse);
+    let mut inverse = SymbolOperator::new(grid, Factors::of(kernel, grid).inverse(grid));
     let block = inverse.layout().len();
     write_blocks(&mut inverse, heights.values().chunks(block), |h, rows| {
         // The mean would add only rounding.
@@ -208,6 +207,7 @@ fn certified(
         elastic_energy: elastic_energy + problem.uniform_energy(mean),
         levels: vec![LevelInfo { grid, iterations: 0, operator_applications: 1, preconditioner_applications: 0 }],
         coarser: None,
+        friction: None,
     };
     GridSolution { pressure, gap, status: Status::FullContact, elements: None, info }
 }

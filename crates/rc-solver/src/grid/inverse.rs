@@ -3,21 +3,22 @@
 //! It is the inverse symbol between an extension of residuals and its transpose.
 
 use rc_core::Grid;
-use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
+use rc_fft::{BLOCK_ROWS, Convolution};
 
 use crate::grid::extension::pyramid::Extension;
 use crate::grid::extension::rows::Shares;
+use crate::grid::factors::Factors;
 use crate::grid::passes::{read_rows, write_rows};
 use crate::parallel::Tasks;
 
 /// The approximate inverse on a periodic grid.
 pub(super) struct Inverse {
-    pub(super) symbol: SymbolTable<f32>,
+    pub(super) symbol: Factors<f32>,
     pub(super) extension: Extension,
 }
 
 impl Inverse {
-    pub(super) fn new(grid: Grid, symbol: SymbolTable<f32>) -> Self {
+    pub(super) fn new(grid: Grid, symbol: Factors<f32>) -> Self {
         Self { symbol, extension: Extension::new([grid.nx(), grid.ny()]) }
     }
 
@@ -32,7 +33,7 @@ impl Inverse {
             rows.copy_from_slice(&values[here.clone()]);
             filled.fill(i * BLOCK_ROWS, Shares::Active(&active[here]), rows);
         });
-        convolution.apply_symbol(symbol);
+        symbol.apply(convolution);
         let tasks = Tasks::new(values.chunks_mut(len));
         read_rows(convolution, &|i, rows| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(rows)));
         extension.gather(Shares::Active(active), values);

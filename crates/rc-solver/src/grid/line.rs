@@ -4,12 +4,13 @@
 //! Mechanics*, 1985, Eq. 2.25). The row is one long transform, and its vectors have blocks of a part of it.
 
 use rc_core::{Boundary, Grid};
-use rc_fft::{LineConvolution, SymbolTable, TransformReal};
+use rc_fft::{LineConvolution, TransformReal};
 
 use crate::descent::layout::BlockLayout;
 use crate::descent::operators::{BlockOperator, PreconditionedOperator};
 use crate::grid::extension::pyramid::Extension;
 use crate::grid::extension::rows::Shares;
+use crate::grid::factors::Factors;
 use crate::grid::response::GridResponse;
 use crate::parallel;
 
@@ -33,14 +34,14 @@ pub(super) fn layout(n: usize) -> BlockLayout {
 /// L on a row.
 pub(super) struct LineOperator<T> {
     convolution: LineConvolution<T>,
-    symbol: SymbolTable<T>,
+    factors: Factors<T>,
     layout: BlockLayout,
 }
 
 impl<T: TransformReal> LineOperator<T> {
-    /// An operator on a row of `n` elements. `symbol` is the table of its waves.
-    pub(super) fn new(n: usize, symbol: SymbolTable<T>) -> Self {
-        Self { convolution: LineConvolution::new(n), symbol, layout: layout(n) }
+    /// An operator on a row of `n` elements, with these factors of its waves.
+    pub(super) fn new(n: usize, factors: Factors<T>) -> Self {
+        Self { convolution: LineConvolution::new(n), factors, layout: layout(n) }
     }
 }
 
@@ -55,7 +56,7 @@ impl<T: TransformReal> BlockOperator<T> for LineOperator<T> {
     }
 
     fn apply(&mut self) {
-        self.convolution.apply(&self.symbol);
+        self.factors.apply_to_line(&mut self.convolution);
     }
 
     fn read(&self, read: &(dyn Fn(usize, &[T]) + Sync)) {
@@ -66,7 +67,7 @@ impl<T: TransformReal> BlockOperator<T> for LineOperator<T> {
 /// L and its approximate inverse on a row, for corrections.
 pub(super) struct LineCorrections {
     operator: LineOperator<f32>,
-    inverse: SymbolTable<f32>,
+    inverse: Factors<f32>,
     extension: Extension,
 }
 
@@ -74,8 +75,8 @@ impl LineCorrections {
     pub(super) fn new(grid: Grid, response: &GridResponse) -> Self {
         let n = grid.nx();
         Self {
-            operator: LineOperator::new(n, response.table.map(|value| value as f32)),
-            inverse: response.table.inverse(grid),
+            operator: LineOperator::new(n, response.factors.to_single()),
+            inverse: response.factors.storage_inverse(grid),
             extension: Extension::new([n, 1]),
         }
     }
@@ -113,7 +114,7 @@ impl PreconditionedOperator for LineCorrections {
         extension.extend(values);
         convolution.values_mut().copy_from_slice(values);
         extension.fill_all(Shares::Active(active), convolution.values_mut());
-        convolution.apply(inverse);
+        inverse.apply_to_line(convolution);
         values.copy_from_slice(convolution.values());
         extension.gather(Shares::Active(active), values);
     }

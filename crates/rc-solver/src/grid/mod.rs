@@ -5,6 +5,7 @@ pub(crate) mod coarser;
 pub(crate) mod dense;
 pub(crate) mod direct_sum;
 pub(crate) mod extension;
+pub(crate) mod factors;
 pub(crate) mod full_contact;
 pub(crate) mod interpolation;
 pub(crate) mod inverse;

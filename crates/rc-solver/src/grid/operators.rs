@@ -1,10 +1,11 @@
 //! L on a uniform grid, by Fourier transforms.
 
 use rc_core::{Boundary, Grid, Kernel};
-use rc_fft::{Convolution, SymbolTable};
+use rc_fft::Convolution;
 
 use crate::descent::layout::BlockLayout;
 use crate::descent::operators::{BlockOperator, LevelOperators, PreconditionedOperator};
+use crate::grid::factors::Factors;
 use crate::grid::inverse::Inverse;
 use crate::grid::line;
 use crate::grid::line::{LineCorrections, LineOperator};
@@ -34,7 +35,7 @@ pub(crate) fn corrections_of(
 /// L of a grid in double precision.
 pub(crate) fn operator_of(grid: Grid, response: GridResponse) -> Box<dyn BlockOperator<f64> + Send> {
     if line::is_line(grid, &response) {
-        Box::new(LineOperator::new(grid.nx(), response.table))
+        Box::new(LineOperator::new(grid.nx(), response.factors))
     } else {
         Box::new(SymbolOperator::of(response))
     }
@@ -73,7 +74,7 @@ impl PreconditionedOperator for NoCorrections {
 struct UniformCorrections {
     /// Convolution of displacements. On periodic cells it serves the approximate inverse too.
     convolution: Convolution<f32>,
-    displacement: SymbolTable<f32>,
+    displacement: Factors<f32>,
     inverse: Inverse,
     /// The margin around heights with free borders.
     margin: Option<Margin>,
@@ -84,10 +85,10 @@ impl UniformCorrections {
     fn new(grid: Grid, kernel: &dyn Kernel, response: &GridResponse) -> Self {
         let margin = (response.boundary == Boundary::Free).then(|| Margin::around(grid));
         let inverse = match &margin {
-            None => Inverse::new(grid, response.table.inverse(grid)),
-            Some(margin) => Inverse::new(margin.grid(), margin.inverse(kernel)),
+            None => Inverse::new(grid, response.factors.storage_inverse(grid)),
+            Some(margin) => Inverse::new(margin.grid(), Factors::AtRest(margin.inverse(kernel))),
         };
-        let displacement = response.table.map(|value| value as f32);
+        let displacement = response.factors.to_single();
         Self { convolution: response.convolution(), displacement, inverse, margin }
     }
 }
@@ -102,7 +103,7 @@ impl BlockOperator<f32> for UniformCorrections {
     }
 
     fn apply(&mut self) {
-        self.convolution.apply_symbol(&self.displacement);
+        self.displacement.apply(&mut self.convolution);
     }
 
     fn read(&self, read: &(dyn Fn(usize, &[f32]) + Sync)) {
@@ -135,18 +136,18 @@ impl PreconditionedOperator for UniformCorrections {
 /// An operator with this symbol, in double precision.
 pub(crate) struct SymbolOperator {
     convolution: Convolution<f64>,
-    symbol: SymbolTable<f64>,
+    factors: Factors<f64>,
 }
 
 impl SymbolOperator {
-    /// An operator on `grid`. `symbol` is the table of its waves.
-    pub(crate) fn new(grid: Grid, symbol: SymbolTable<f64>) -> Self {
-        Self { convolution: Convolution::new(grid), symbol }
+    /// An operator on `grid`, with these factors of its waves.
+    pub(crate) fn new(grid: Grid, factors: Factors<f64>) -> Self {
+        Self { convolution: Convolution::new(grid), factors }
     }
 
     /// The operator L of a grid.
     fn of(response: GridResponse) -> Self {
-        Self { convolution: response.convolution(), symbol: response.table }
+        Self { convolution: response.convolution(), factors: response.factors }
     }
 }
 
@@ -160,7 +161,7 @@ impl BlockOperator<f64> for SymbolOperator {
     }
 
     fn apply(&mut self) {
-        self.convolution.apply_symbol(&self.symbol);
+        self.factors.apply(&mut self.convolution);
     }
 
     fn read(&self, read: &(dyn Fn(usize, &[f64]) + Sync)) {

@@ -6,6 +6,8 @@ use rc_fft::{Convolution, SymbolTable, TransformReal, half_plane_values};
 
 use rc_fft::has_small_factors;
 
+use crate::grid::factors::Factors;
+
 /// Maximum prime factor of the periods of padded grids.
 ///
 /// Fourier transforms of such lengths are fast.
@@ -19,7 +21,7 @@ pub(crate) struct GridResponse {
     /// Number of elements of the transforms along both axes.
     period: [usize; 2],
     /// Factor of each wave of the period.
-    pub(crate) table: SymbolTable<f64>,
+    pub(crate) factors: Factors<f64>,
     pub(crate) boundary: Boundary,
 }
 
@@ -29,13 +31,18 @@ impl GridResponse {
         if let Some(response) = kernel.free_response(grid) {
             let period = [grid.nx(), grid.ny()].map(padded_side);
             let table = table_of_response(padded_grid(grid, period), [grid.nx(), grid.ny()], &response);
-            return Self { grid, period, table, boundary: Boundary::Free };
+            return Self { grid, period, factors: Factors::AtRest(table), boundary: Boundary::Free };
         }
-        let mut table = SymbolTable::new(grid, kernel.symbol(grid));
+        let mut factors = Factors::of(kernel, grid);
         if let Some(displacement) = kernel.uniform_displacement() {
-            table.set_mean(displacement / grid.len() as f64);
+            factors.set_mean(displacement / grid.len() as f64);
         }
-        Self { grid, period: [grid.nx(), grid.ny()], table, boundary: Boundary::Periodic }
+        Self { grid, period: [grid.nx(), grid.ny()], factors, boundary: Boundary::Periodic }
+    }
+
+    /// The response of the elastic solid with the storage modulus of each wave.
+    pub(crate) fn storage(self) -> Self {
+        Self { factors: self.factors.storage(), ..self }
     }
 
     /// A convolution between the grid and the waves of the table.

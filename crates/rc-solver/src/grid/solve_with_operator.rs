@@ -89,6 +89,7 @@ fn flat(grid: Grid, mean_pressure: f64) -> GridSolution {
         elastic_energy: 0.0,
         levels: vec![level],
         coarser: None,
+        friction: None,
     };
     GridSolution {
         pressure: Field::from_fn(grid, |_| mean_pressure),

@@ -22,7 +22,7 @@ const SMALLEST_SIDE: usize = 64;
 const PIECE: usize = 4096;
 
 /// The heights on the coarser of nested grids, finest first.
-pub(super) fn coarser_heights(heights: &Field, boundary: Boundary) -> Vec<Field> {
+pub(crate) fn coarser_heights(heights: &Field, boundary: Boundary) -> Vec<Field> {
     coarsen(heights, boundary, Pits::Filled, about_halved(heights.grid(), SMALLEST_SIDE))
 }
 
@@ -52,6 +52,34 @@ impl<'a> GridLevels<'a> {
         self.n_above + self.heights.len()
     }
 
+    /// The problem that all grids solve.
+    pub(crate) fn problem(&self) -> &'a Problem {
+        self.problem
+    }
+
+    /// The heights of a grid.
+    pub(crate) fn heights(&self, above: usize) -> &'a Field {
+        self.heights[above - self.n_above]
+    }
+
+    /// The values of a solved grid that a grid with half its elements is compared with.
+    pub(crate) fn values_of(&self, descent: &Descent<'_>, outcome: &Outcome, above: usize) -> Option<LevelValues> {
+        let is_half = || {
+            let (grid, finer) = (self.grid(above), self.grid(above - 1));
+            // A profile has one row on every grid.
+            2 * grid.nx() == finer.nx() && (2 * grid.ny() == finer.ny() || finer.ny() == 1)
+        };
+        (above == self.n_above || is_half()).then(|| LevelValues {
+            rms_pressure: rms(descent.pressure(), PIECE),
+            penetration: self.problem.h_max + outcome.approach,
+        })
+    }
+
+    /// The start of a finer grid.
+    pub(crate) fn start_from(&self, descent: &Descent<'_>, above: usize) -> Start {
+        Start::Pressure(prolong(descent, self.grid(above)))
+    }
+
     /// Solves all grids, coarsest first.
     pub(crate) fn solve_all(&self, nested: &Nested<'_>) -> ((Descent<'a>, Outcome), History) {
         let begun = Begun { above: self.n_levels() - 1, start: Start::Nothing, history: History::default() };
@@ -71,7 +99,7 @@ impl<'a> Levels for GridLevels<'a> {
     }
 
     fn solve_level(&self, above: usize, start: Start, goal: Goal, observer: &dyn Observer) -> Self::Solved {
-        let (heights, grid) = (self.heights[above - self.n_above].values(), self.grid(above));
+        let (heights, grid) = (self.heights(above).values(), self.grid(above));
         let watch = DescentObserver { observer, mesh: &grid };
         if above == 0 && !matches!(start, Start::Nothing) && observer.should_stop() {
             let operators = certifying_operators(grid, self.kernel);
@@ -89,18 +117,10 @@ impl<'a> Levels for GridLevels<'a> {
     }
 
     fn values(&self, (descent, outcome): &Self::Solved, above: usize) -> Option<LevelValues> {
-        let is_half = || {
-            let (grid, finer) = (self.grid(above), self.grid(above - 1));
-            // A profile has one row on every grid.
-            2 * grid.nx() == finer.nx() && (2 * grid.ny() == finer.ny() || finer.ny() == 1)
-        };
-        (above == self.n_above || is_half()).then(|| LevelValues {
-            rms_pressure: rms(descent.pressure(), PIECE),
-            penetration: self.problem.h_max + outcome.approach,
-        })
+        self.values_of(descent, outcome, above)
     }
 
     fn start(&self, (descent, _): Self::Solved, above: usize) -> Start {
-        Start::Pressure(prolong(&descent, self.grid(above)))
+        self.start_from(&descent, above)
     }
 }

@@ -46,6 +46,7 @@ impl Procedure<'_> {
                 elastic_energy,
                 levels: vec![self.info],
                 coarser: None,
+                friction: None,
             },
         })
     }

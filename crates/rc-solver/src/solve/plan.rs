@@ -19,6 +19,7 @@ use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
 use crate::problem::summit::Summit;
 use crate::problem::tolerance::ErrorBound;
+use crate::sliding::levels::solve_sliding;
 use crate::solution::solved::Solved;
 use crate::solution::whole::{HowSolved, Solution};
 use crate::solve::error::SolveError;
@@ -114,7 +115,12 @@ impl<'a> Plan<'a> {
             (Method::GaussSeidel, by_gauss_seidel(&problem, heights, params, observer)?)
         } else {
             let limits = params.iteration(bound);
-            (Method::Uniform, solve_uniform(heights, kernel, problem.bounds(), &limits, observer)?)
+            let solution = if kernel.sliding_velocity().is_some() {
+                solve_sliding(heights, kernel, problem.bounds(), &limits, observer)?
+            } else {
+                solve_uniform(heights, kernel, problem.bounds(), &limits, observer)?
+            };
+            (Method::Uniform, solution)
         };
         let how = how(method, reason);
         let summit = Summit::on_grid(problem.heights.surface(), (heights, heights.max()), problem.boundary());

@@ -63,7 +63,7 @@ fn energy_error(split: GapSplit, base_grid: Grid, grid: Grid, rng: &mut impl Rng
     let symbol = Love.symbol(grid);
     let of_symbol = |power: f64| {
         let value = |kx: usize, ky: usize| if kx + ky == 0 { 0.0 } else { symbol(kx, ky).powf(power) };
-        SymbolOperator::new(grid, SymbolTable::new(grid, value))
+        SymbolOperator::new(grid, Factors::AtRest(SymbolTable::new(grid, value)))
     };
     let (mut exact, mut root) = (of_symbol(1.0), of_symbol(-0.5));
     let mut vector: Vec<f64> = (0..grid.len()).map(|_| rng.random::<f64>() - 0.5).collect();

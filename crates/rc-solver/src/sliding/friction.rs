@@ -1,0 +1,98 @@
+//! Friction of a sliding contact, from its pressure and heights.
+
+use rayon::prelude::*;
+use rc_core::{DVec2, Field, Kernel};
+use rc_fft::half_plane_values;
+
+use crate::descent::info::{Friction, GridSolution, Status};
+use crate::sliding::newton::Work;
+
+/// Sums over waves, per nominal area and in E*.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    /// -⟨p ∂h⟩ along the velocity and across.
+    of_heights: [f64; 2],
+    /// -⟨p ∂u⟩ along the velocity.
+    of_displacement: f64,
+    /// ⟨∂h S⁻¹ ∂h⟩ along the velocity, with the symmetric part S of L.
+    slope: f64,
+    /// Maximum of |Im L|/Re L.
+    loss_tangent: f64,
+}
+
+impl Sums {
+    fn plus(self, other: Self) -> Self {
+        Self {
+            of_heights: std::array::from_fn(|i| self.of_heights[i] + other.of_heights[i]),
+            of_displacement: self.of_displacement + other.of_displacement,
+            slope: self.slope + other.slope,
+            loss_tangent: self.loss_tangent.max(other.loss_tangent),
+        }
+    }
+}
+
+/// Friction of `solution`. `None` if nothing slides.
+///
+/// The force along the velocity is -⟨p ∂h⟩. In contact the slope of the displacement u = L p is that of the heights, so
+/// -⟨p ∂u⟩ is the same in the limit of small elements. On a grid the two differ, mostly by more than either is wrong.
+pub(crate) fn friction(solution: &GridSolution, heights: &Field, kernel: &dyn Kernel, work: Work) -> Option<Friction> {
+    let (velocity, grid) = (kernel.sliding_velocity()?, heights.grid());
+    let symbol = kernel.sliding_symbol(grid)?;
+    let along = velocity.normalize_or(DVec2::X);
+    let (nx, ny) = (grid.nx() as i64, grid.ny() as i64);
+    let waves = |field: &Field| half_plane_values(field, field.mean(), |wave| wave);
+    let (pressures, heights) = (waves(&solution.pressure), waves(heights));
+    let scale = (grid.len() as f64).powi(-2);
+    let of_wave = |place: usize| -> Sums {
+        let (kx, row) = (place as i64 / ny, place as i64 % ny);
+        let ky = if 2 * row > ny { row - ny } else { row };
+        // A wave of half the elements has no slope at their centres.
+        let is_half = [2 * kx == nx, 2 * ky == ny];
+        if kx == 0 && ky == 0 {
+            return Sums::default();
+        }
+        let mut q = grid.angular_wave(kx, ky);
+        (q.x, q.y) = (if is_half[0] { 0.0 } else { q.x }, if is_half[1] { 0.0 } else { q.y });
+        let count = if kx == 0 || is_half[0] { 1.0 } else { 2.0 };
+        let (p, h, factor) = (pressures[place], heights[place], symbol(kx, ky));
+        let [q, across] = [q.dot(along), q.dot(along.perp())];
+        // -Re(conj(p) i q h) = q Im(conj(p) h)
+        let product = (p.conj() * h).im;
+        Sums {
+            of_heights: [q, across].map(|q| scale * count * q * product),
+            of_displacement: scale * count * q * factor.im * p.norm_sqr(),
+            slope: scale * count * q * q * h.norm_sqr() / factor.re,
+            loss_tangent: factor.im.abs() / factor.re,
+        }
+    };
+    let columns: Vec<Sums> = (0..pressures.len() / ny as usize)
+        .into_par_iter()
+        .map(|kx| (kx * ny as usize..(kx + 1) * ny as usize).map(of_wave).fold(Sums::default(), Sums::plus))
+        .collect();
+    let sums = columns.into_iter().fold(Sums::default(), Sums::plus);
+    Some(finished(solution, &sums, velocity, work))
+}
+
+fn finished(solution: &GridSolution, sums: &Sums, velocity: DVec2, work: Work) -> Friction {
+    let info = &solution.info;
+    let load = info.mean_pressure;
+    let coefficient = sums.of_heights[0] / load;
+    let of_displacement = sums.of_displacement / load;
+    // ‖p - p*‖² ≤ G = U (√(G/U))².
+    let distance = info.certificate.energy * info.elastic_energy.max(0.0).sqrt();
+    let bound = distance * sums.slope.sqrt() / load;
+    let iteration = info.iteration_error.powi(2) * coefficient.abs();
+    let is_exact = solution.status == Status::FullContact && info.certificate.energy < 1e-9;
+    let error = if is_exact { 0.0 } else { (coefficient - of_displacement).abs().max(iteration) };
+    Friction {
+        coefficient,
+        error,
+        bound,
+        of_displacement,
+        lateral: sums.of_heights[1] / load,
+        power: velocity.length() * sums.of_heights[0],
+        max_loss_tangent: sums.loss_tangent,
+        gmres_iterations: work.gmres_iterations,
+        storage_rounds: work.storage_rounds,
+    }
+}

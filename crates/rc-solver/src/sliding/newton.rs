@@ -1,0 +1,177 @@
+//! The iteration on one grid: Newton's method on the active elements, and steps that always converge.
+//!
+//! A Newton step solves L d = -(g - gap of contact) on the active elements by GMRES, roughly. It is taken if it lowers
+//! the energy error. Otherwise a round of the descent lowers the energy of an elastic solid that has the storage modulus
+//! of each wave, B = 1/Re(1/L), under the heights h - (L - B) p. Repeated, this alone contracts by the sine of the
+//! maximum loss angle.
+
+use rc_core::Observer;
+
+use crate::descent::gmres::{self, ActiveElements, LinearSystem};
+use crate::descent::operators::{PreconditionedOperator, read_blocks, write_blocks};
+use crate::descent::outcome::Outcome;
+use crate::descent::run::{DescentObserver, Goal};
+use crate::descent::state::Descent;
+use crate::descent::stop::Stopped;
+use crate::descent::sums::GapSums;
+
+/// How accurately the system of a Newton step is solved.
+const GMRES: gmres::Goal = gmres::Goal { reduction: 0.1, directions: 40 };
+
+/// Parts of a Newton step that are tried.
+const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
+
+/// A part s of a step is taken if it lowers the energy error by this times s.
+const PROGRESS: f64 = 0.1;
+
+/// Failed Newton steps in a row after which the storage modulus is kept until the error has fallen.
+const FAILURES: usize = 3;
+
+/// Rounds without progress after which the iteration gives up.
+const PATIENCE: usize = 200;
+
+/// Work of an iteration.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Work {
+    pub(crate) gmres_iterations: usize,
+    pub(crate) storage_rounds: usize,
+}
+
+/// A descent whose operator is not symmetric.
+pub(crate) struct SlidingDescent<'a> {
+    pub(crate) descent: Descent<'a>,
+    /// The elastic solid with the storage modulus of each wave.
+    pub(crate) storage: Box<dyn PreconditionedOperator + 'a>,
+    pub(crate) work: Work,
+}
+
+impl SlidingDescent<'_> {
+    /// Iterates until the goal is reached, or cannot be reached.
+    pub(crate) fn run(&mut self, goal: Goal, watch: &DescentObserver<'_>) -> Outcome {
+        let mut sums = self.descent.start();
+        let (mut failures, mut until) = (0, 0.0);
+        let (mut smallest, mut rounds) = (f64::INFINITY, 0);
+        loop {
+            let mut error = self.descent.error(&sums);
+            self.descent.tell(watch, [error, goal.tolerance], &sums);
+            if error <= goal.tolerance {
+                if goal.certify.is_none() {
+                    return self.descent.outcome(&sums, true);
+                }
+                sums = self.descent.refresh();
+                error = self.descent.error(&sums);
+                let outcome = self.descent.outcome(&sums, true);
+                if error <= goal.tolerance && goal.certify.is_some_and(|bound| outcome.certificate.meets(bound)) {
+                    return outcome;
+                }
+            }
+            (smallest, rounds) = if error < 0.9 * smallest { (error, 0) } else { (smallest, rounds + 1) };
+            if self.descent.info.iterations >= goal.max_iterations || rounds > PATIENCE {
+                sums = self.descent.refresh();
+                return self.descent.unfinished(goal, &sums);
+            }
+            let may_step = failures < FAILURES || self.energy_error(&sums) < until;
+            let next = if may_step { self.newton_step(&sums, watch.observer) } else { Ok(None) };
+            let next = match next {
+                Ok(Some(next)) => {
+                    failures = 0;
+                    Ok(next)
+                }
+                Ok(None) => {
+                    if may_step {
+                        (failures, until) = (failures + 1, 0.5 * self.energy_error(&sums));
+                    }
+                    self.storage_round(&sums, watch.observer)
+                }
+                Err(stopped) => Err(stopped),
+            };
+            let Ok(next) = next else {
+                self.descent.admit();
+                return self.descent.stopped(goal, sums);
+            };
+            sums = next;
+        }
+    }
+
+    /// √(G/U) of the present pressure.
+    fn energy_error(&self, sums: &GapSums) -> f64 {
+        self.descent.outcome(sums, false).certificate.energy
+    }
+
+    /// A part of a Newton step that lowers the energy error. `None` if no part does, and then nothing has changed.
+    fn newton_step(&mut self, sums: &GapSums, observer: &dyn Observer) -> Result<Option<GapSums>, Stopped> {
+        let error = self.energy_error(sums);
+        let Some(set) = self.direction(sums, observer)? else { return Ok(None) };
+        let descent = &self.descent;
+        let before = (descent.pressure.clone(), descent.gap.clone());
+        let (zero_gap, pressed, unit) = (descent.zero_gap, descent.pressed, descent.problem.unit());
+        for part in PARTS {
+            self.descent.zero_gap = zero_gap + part * unit * set.mean_displacement;
+            let next = self.descent.project(part * unit, false, observer)?;
+            if self.energy_error(&next) < (1.0 - PROGRESS * part) * error {
+                return Ok(Some(next));
+            }
+            let descent = &mut self.descent;
+            (descent.pressure.copy_from_slice(&before.0), descent.gap.copy_from_slice(&before.1));
+            (descent.zero_gap, descent.pressed, descent.is_chosen) = (zero_gap, pressed, false);
+            descent.directions.active.copy_from_slice(&set.elements.active);
+        }
+        Ok(None)
+    }
+
+    /// Solves for a Newton direction and its displacement. `None` if no element is active.
+    fn direction(&mut self, sums: &GapSums, observer: &dyn Observer) -> Result<Option<Active>, Stopped> {
+        let descent = &mut self.descent;
+        descent.is_chosen = false;
+        let set = descent.begin_round();
+        if set.n == 0.0 {
+            return Ok(None);
+        }
+        descent.precondition_mean(sums, set.n);
+        let len = descent.layout.len();
+        let elements = ActiveElements::new(descent.directions.active.clone(), len);
+        let mut residual = elements.gather(&descent.directions.preconditioned);
+        residual.iter_mut().for_each(|value| *value = -*value);
+        let operator = &mut *descent.operators.corrections;
+        let mut system = LinearSystem { operator, elements: &elements, fixed_mean: set.fixed_mean };
+        let (step, iterations) = system.solve(residual, GMRES, observer)?;
+        elements.scatter(&step, &mut descent.directions.direction);
+        self.work.gmres_iterations += iterations;
+        descent.info.iterations += iterations.max(1);
+        descent.info.preconditioner_applications += iterations;
+        descent.info.operator_applications += iterations + 1;
+        let directions = &mut descent.directions;
+        let operator = &mut *descent.operators.corrections;
+        write_blocks(operator, directions.direction.chunks(len), |step, written| written.copy_from_slice(step));
+        operator.apply();
+        let blocks = directions.displacement.chunks_mut(len).zip(directions.active.chunks(len));
+        let sums = read_blocks(operator, blocks, |(kept, active), read| {
+            kept.copy_from_slice(read);
+            let of_active = read.iter().zip(active).filter(|(_, active)| **active);
+            [of_active.map(|(&u, _)| f64::from(u)).sum()]
+        });
+        let [displaced] = descent.layout.total(sums);
+        Ok(Some(Active { elements, mean_displacement: displaced / set.n }))
+    }
+
+    /// A round of the descent with the storage modulus. The heights make up for what the operators differ in.
+    fn storage_round(&mut self, sums: &GapSums, observer: &dyn Observer) -> Result<GapSums, Stopped> {
+        self.work.storage_rounds += 1;
+        let descent = &mut self.descent;
+        std::mem::swap(&mut descent.operators.corrections, &mut self.storage);
+        descent.start_afresh();
+        let round = descent.round(1, sums, observer);
+        std::mem::swap(&mut descent.operators.corrections, &mut self.storage);
+        descent.start_afresh();
+        round?;
+        // The gap has followed the other operator.
+        Ok(descent.refresh())
+    }
+}
+
+/// The elements of a Newton step.
+struct Active {
+    elements: ActiveElements,
+    /// Mean displacement of the direction over them.
+    mean_displacement: f64,
+}
