@@ -21,8 +21,11 @@ use crate::warning::Warning;
 pub struct Summary {
     /// `converged`, `full_contact` or `not_converged`.
     pub status: String,
-    /// Prescribed quantity, `pressure` or `penetration`.
+    /// Prescribed quantity, `pressure`, `penetration` or `force`. In sweeps, a force is given as its pressure.
     pub control: String,
+    /// The prescribed force (N). It exists only where a force is prescribed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force: Option<f64>,
     /// Kernel, for example `love` or `spectral`.
     pub kernel: String,
     /// Method that was used: `adaptive`, `uniform` or `gauss-seidel`.
@@ -151,6 +154,9 @@ pub struct Summary {
     /// Origin of the heights, if they are from a file of a map.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<MapOrigin>,
+    /// Material of the other body, if both bodies are elastic.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub second_body: Option<SecondBody>,
     /// Doubts about the input and the result.
     ///
     /// Summaries of older versions have none.
@@ -166,6 +172,15 @@ pub struct Summary {
     pub threads: usize,
     /// Version of rc.
     pub version: String,
+}
+
+/// The elastic constants of the other body.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SecondBody {
+    /// Young's modulus (Pa).
+    pub young: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
 }
 
 /// Information for a summary besides the solution.
@@ -220,6 +235,7 @@ impl Summary {
         Self {
             status: solution.status().name().to_owned(),
             control: context.control.key().to_owned(),
+            force: None,
             kernel: solution.kernel().to_owned(),
             method: solution.method().name().to_owned(),
             method_reason: Some(solution.reason().to_string()),
@@ -267,6 +283,7 @@ impl Summary {
             operator_applications: info.fine_operator_applications(),
             leakage: None,
             source: None,
+            second_body: None,
             warnings: Vec::new(),
             wall_seconds: context.wall.as_secs_f64(),
             peak_memory_bytes: memory::peak(),
@@ -277,7 +294,8 @@ impl Summary {
 
     /// The summary as the cells of a row.
     ///
-    /// The cell `warnings` has the codes of the warnings. There is no `source`. The cells of a flow are `permeance_x`, `permeance_y`, their
+    /// The cell `warnings` has the codes of the warnings. There is no `source` and no
+    /// `second_body`. The cells of a flow are `permeance_x`, `permeance_y`, their
     /// errors (all in m³), and `percolates` (along x and along y).
     ///
     /// # Panics
@@ -293,6 +311,7 @@ impl Summary {
         }
         cells.insert("warnings".to_owned(), codes.into());
         cells.shift_remove("source");
+        cells.shift_remove("second_body");
         if let (Some(leakage), Some(_)) = (&self.leakage, cells.shift_remove("leakage")) {
             cells.extend(leakage.cells().map(|(column, value)| (column.to_owned(), value)));
         }
