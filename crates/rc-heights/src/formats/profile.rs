@@ -101,7 +101,7 @@ type Points = (Vec<(f64, usize)>, Vec<f64>);
 
 /// The places and heights of the text, which are in these of `width` columns.
 fn of_columns(text: &str, heading: &Heading, (width, columns): (usize, [usize; 2])) -> Result<Points, FormatError> {
-    let (mut x, mut heights) = (Vec::new(), Vec::new());
+    let (mut x, mut heights, flag) = (Vec::new(), Vec::new(), heading.titles.flag());
     for (line, row) in data_lines(text, heading.first) {
         let (words, comma) = words(row);
         let all: Vec<&str> = words.collect();
@@ -119,7 +119,7 @@ fn of_columns(text: &str, heading: &Heading, (width, columns): (usize, [usize; 2
             return Err(FormatError::NoNumber { line, value: columns[0] + 1, text: shown(all[columns[0]]) });
         }
         x.push((place, decimals(all[columns[0]])));
-        let is_valid = heading.titles.flag().is_none_or(|flag| all.get(flag).is_none_or(|word| word.trim() != "0"));
+        let is_valid = flag.and_then(|flag| all.get(flag)).is_none_or(|word| word.trim() != "0");
         heights.push(if is_valid { height } else { f64::NAN });
     }
     Ok((x, heights))
