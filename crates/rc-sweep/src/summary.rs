@@ -216,6 +216,11 @@ fn as_given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<
     Option::deserialize(deserializer).map(Some)
 }
 
+/// A value that is not infinite.
+fn finite(value: f64) -> Option<f64> {
+    Some(value).filter(|value| value.is_finite())
+}
+
 /// Conductance for unit conductivity and its error (1/m). There is none in full contact.
 fn conductance(solution: &Solution<'_>, units: Units) -> [Option<f64>; 2] {
     // A conductance in 1/λ is a stiffness in E*/λ per E*.
@@ -228,10 +233,8 @@ impl Summary {
     /// The summary of `solution` in SI units. Its memory is the peak of the process so far.
     #[must_use]
     pub fn of(solution: &Solution<'_>, units: Units, context: &SolveContext) -> Self {
-        let (info, observables, grid) = (solution.info(), solution.observables(), solution.grid());
-        let stiffness = units.pascals_per_metre(solution.stiffness());
-        let [conductance, error_of_conductance] = conductance(solution, units);
-        let [tolerance, energy_tolerance] = tolerances(solution.bound());
+        let (info, [tolerance, energy_tolerance]) = (solution.info(), tolerances(solution.bound()));
+        let (observables, [of_spots, error_of_spots]) = (solution.observables(), conductance(solution, units));
         Self {
             status: solution.status().name().to_owned(),
             control: context.control.key().to_owned(),
@@ -239,7 +242,7 @@ impl Summary {
             kernel: solution.kernel().to_owned(),
             method: solution.method().name().to_owned(),
             method_reason: Some(solution.reason().to_string()),
-            grid: [grid.nx(), grid.ny()],
+            grid: [solution.grid().nx(), solution.grid().ny()],
             border_level: Some(context.border_level),
             elements: solution.n_elements(),
             levels: info.levels.len(),
@@ -251,7 +254,7 @@ impl Summary {
             area_fraction: observables.area.fraction,
             area_fraction_cells: observables.area.cells,
             area_fraction_error: observables.area.error,
-            hardness: Some(solution.hardness()).filter(|hardness| hardness.is_finite()).map(|h| units.pascals(h)),
+            hardness: finite(solution.hardness()).map(|h| units.pascals(h)),
             plastic_area_fraction: observables.plastic.map(|plastic| plastic.fraction),
             plastic_area_fraction_error: observables.plastic.map(|plastic| plastic.error),
             mean_plastic_gap: observables.plastic.map(|plastic| units.metres(plastic.mean_gap)),
@@ -262,10 +265,10 @@ impl Summary {
             max_pressure: units.pascals(observables.max_pressure),
             mean_gap: units.metres(observables.mean_gap),
             mean_gap_error: Some(units.metres(observables.mean_gap_error)),
-            contact_stiffness: Some(stiffness).filter(|value| value.is_finite()),
-            contact_conductance: conductance,
-            contact_conductance_error: error_of_conductance,
-            conductance: context.conductivity.map(|of_bodies| conductance.map(|per_unit| per_unit * of_bodies)),
+            contact_stiffness: finite(units.pascals_per_metre(solution.stiffness())),
+            contact_conductance: of_spots,
+            contact_conductance_error: error_of_spots,
+            conductance: context.conductivity.map(|of_bodies| of_spots.map(|per_unit| per_unit * of_bodies)),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,

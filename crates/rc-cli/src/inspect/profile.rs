@@ -198,6 +198,19 @@ fn roughness(
     Ok((left[..points.min(left.len())].to_vec(), sections))
 }
 
+/// The spectra of a profile; empty for too few points.
+fn spectrum(heights: &[f64], spacing: f64) -> Vec<ProfileRow> {
+    if heights.len() < LEAST_POINTS {
+        return Vec::new();
+    }
+    let row = |row: &rc_fractal::ProfileSpectrumRow| ProfileRow {
+        wavenumber: row.wavenumber,
+        psd_profile: row.along,
+        psd: row.isotropic,
+    };
+    spectra_of_profile(heights, spacing).iter().map(row).collect()
+}
+
 impl ProfileRecord {
     fn of(args: &InspectArgs, profile: &Profile) -> Result<Self, CliError> {
         let Profile { heights, spacing, notes } = profile;
@@ -221,11 +234,6 @@ impl ProfileRecord {
         let shape = Shape { rms_slope, range: h_max - h_min, sides: [profile.length(); 2] };
         let mut warnings: Vec<Warning> = warnings::surface::assumed(&assumed).into_iter().collect();
         warnings.extend(shape.warnings());
-        let row = |row: &rc_fractal::ProfileSpectrumRow| ProfileRow {
-            wavenumber: row.wavenumber,
-            psd_profile: row.along,
-            psd: row.isotropic,
-        };
         // Of a profile without filters, missing points are passed over, but an element goes on beyond them.
         let is_filtered = args.lambda_s.or(args.lambda_c).is_some();
         let filtered = ProfileParameters::of(if is_filtered { &kept } else { heights }, sections);
@@ -236,15 +244,13 @@ impl ProfileRecord {
         };
         let filtered = Filtered::new(filtered, width(&kept, filtered.z, sections));
         let unfiltered = Unfiltered::new(unfiltered, width(&whole, unfiltered.z, 1));
-        let spectrum = if whole.len() >= LEAST_POINTS {
-            spectra_of_profile(&whole, *spacing).iter().map(row).collect()
-        } else {
+        let spectrum = spectrum(&whole, *spacing);
+        if spectrum.is_empty() {
             notes.push(format!(
                 "{} points have no spectrum, which needs {LEAST_POINTS}; Psk, Pku and the rms slope of so few say little",
                 whole.len()
             ));
-            Vec::new()
-        };
+        }
         Ok(Self {
             points: heights.len(),
             missing,

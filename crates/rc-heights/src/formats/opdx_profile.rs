@@ -32,7 +32,7 @@ fn numbers(bytes: &[u8], unit: f64) -> Option<Vec<f64>> {
 }
 
 /// The profile, unless it has no heights.
-pub(super) fn channel<'a>(items: ProfileItems<'a>) -> Option<Result<Channel<'a>, FormatError>> {
+pub(super) fn channel(items: ProfileItems<'_>) -> Option<Result<Channel<'_>, FormatError>> {
     let data = items.heights?;
     let missing = |field| FormatError::Missing { format: Format::Opdx, field };
     let scale_and_places = || {

@@ -61,14 +61,18 @@ pub(super) fn outliers(heights: &Field, spikes: &[usize], threshold: f64) -> Vec
     if !values.iter().any(|height| height.is_nan()) {
         return all;
     }
-    spikes.iter().for_each(|i| values[*i] = f64::NAN);
+    for i in spikes {
+        values[*i] = f64::NAN;
+    }
     let mut borders = Borders { heights: values, nx: grid.nx() as isize, ny: grid.ny() as isize, threshold };
     for _ in 0..PASSES {
         let found = borders.outliers();
         if found.is_empty() {
             break;
         }
-        found.iter().for_each(|(i, _)| borders.heights[*i] = f64::NAN);
+        for (i, _) in &found {
+            borders.heights[*i] = f64::NAN;
+        }
         all.extend(found);
     }
     all
@@ -118,7 +122,9 @@ impl Borders {
             |[x, y]: [isize; 2]| self.measured([x, y]) - slope[0] * (x - at[0]) as f64 - slope[1] * (y - at[1]) as f64;
         let mut levels: Vec<f64> = near.iter().map(|place| level(*place)).collect();
         let Some(base) = median(&mut levels) else { return Found::Usual };
-        levels.iter_mut().for_each(|level| *level = (*level - base).abs());
+        for level in &mut levels {
+            *level = (*level - base).abs();
+        }
         let farthest = near.iter().map(|[x, y]| (x - at[0]).abs().max((y - at[1]).abs())).max().unwrap_or(0);
         // A bent slope is off its plane by a part of its rise.
         let rise = farthest as f64 * slope[0].abs().max(slope[1].abs());

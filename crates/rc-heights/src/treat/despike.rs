@@ -20,7 +20,9 @@ pub(super) fn despike(mut map: HeightMap, sigma: f64) -> Result<(HeightMap, Vec<
     let at_holes = border_outliers(&map.heights, sigma, &points);
     let before = map.heights.values().to_vec();
     // A membrane at a hole would follow the outliers beside it.
-    at_holes.iter().for_each(|(i, base)| map.heights.values_mut()[*i] = *base);
+    for (i, base) in &at_holes {
+        map.heights.values_mut()[*i] = *base;
+    }
     replace(&mut map, &points);
     points.extend(at_holes.iter().map(|(i, _)| i));
     let removed = points.iter().map(|i| (*i, before[*i] - map.heights.values()[*i])).collect();
