@@ -92,6 +92,10 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
     let summary = &result.summary;
     let load = match summary.control.as_str() {
         "penetration" => format!("at a penetration of {}", engineering(summary.penetration, "m")),
+        "force" => {
+            let force = engineering(summary.force.unwrap_or(f64::NAN), "N");
+            format!("under {force}, which are {}", engineering(summary.mean_pressure, "Pa"))
+        }
         _ => format!("under {}", engineering(summary.mean_pressure, "Pa")),
     };
     let (surface, no_surface) = match ResultSurface::of(&scene_path, &result) {
