@@ -41,6 +41,7 @@ mod alias_sum;
 mod averages;
 mod bessel;
 mod chebyshev;
+mod creep;
 mod error;
 mod free_love;
 mod gauss_legendre;
@@ -62,6 +63,7 @@ mod viscoelastic;
 
 pub use alias_sum::love_alias_sum;
 pub use bessel::bessel_series;
+pub use creep::Retardation;
 pub use error::KernelError;
 pub use free_love::FreeLove;
 pub use half_space::HalfSpace;

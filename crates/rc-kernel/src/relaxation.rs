@@ -129,6 +129,14 @@ impl Relaxation {
         self.modulus(omega).inv()
     }
 
+    /// Pairs of g and τ of a Prony series, in increasing order of τ. `None` if the material is not one.
+    pub(crate) fn prony_terms(&self) -> Option<&[[f64; 2]]> {
+        match &self.0 {
+            Kind::Prony(terms) => Some(terms),
+            Kind::Fractional { .. } => None,
+        }
+    }
+
     /// E0/E∞, the ratio of the glassy to the relaxed modulus.
     #[must_use]
     pub fn glassy_ratio(&self) -> f64 {
