@@ -75,7 +75,10 @@ pub use periodic::{PeriodicLove, PeriodicSource};
 pub use relaxation::{MaterialError, Relaxation};
 pub use shells::MAX_SHELLS;
 pub use spectral::Spectral;
-pub use split::{CoarseElement, CoarseFilter, Filter, ScaleSplit, SplitParams, Stencil, UnevenFilter};
+pub use split::{
+    CoarseElement, CoarseFilter, Filter, RelaxedStencil, ScaleSplit, SlidingCompliance, SplitParams, Stencil, Tail,
+    UnevenFilter,
+};
 pub use truncated::{LoadForm, shells_for, truncated_coefficient, truncation_error_bound};
 pub use viscoelastic::Viscoelastic;
 

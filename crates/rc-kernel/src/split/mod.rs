@@ -28,6 +28,7 @@ mod filter;
 mod inverse;
 mod kept;
 mod params;
+mod relaxed;
 mod stencil;
 mod uneven;
 mod window;
@@ -35,10 +36,14 @@ mod window;
 pub use coarse::{CoarseElement, CoarseFilter};
 pub use filter::Filter;
 pub use params::SplitParams;
+pub use relaxed::{RelaxedStencil, SlidingCompliance, Tail};
 pub use stencil::Stencil;
 pub use uneven::UnevenFilter;
 
+use std::sync::Arc;
+
 use kept::Kept;
+use relaxed::Rows;
 use window::Window;
 
 /// Tables of the split kernel.
@@ -85,6 +90,29 @@ impl ScaleSplit {
     #[must_use]
     pub fn uneven_level_stencil(&self, inner: f64, sides: [f64; 2]) -> Stencil {
         stencil::between(&self.window, self.params.cutoff, inner, sides)
+    }
+
+    /// [`ScaleSplit::love_stencil`] of a solid that relaxes, with lengths in elements.
+    #[must_use]
+    pub fn relaxed_love(&self, compliance: &SlidingCompliance) -> RelaxedStencil {
+        static ROWS: Kept<Arc<Rows>> = Kept::new();
+        let rows = ROWS.of(self.params, || Arc::new(Rows::love(&self.window, self.params)));
+        rows.relaxed(&self.love_stencil(), compliance)
+    }
+
+    /// [`ScaleSplit::level_stencil`] of a solid that relaxes, with lengths in elements.
+    #[must_use]
+    pub fn relaxed_level(&self, compliance: &SlidingCompliance) -> RelaxedStencil {
+        let (cutoff, inner) = (self.params.cutoff, 0.5 * self.params.cutoff as f64);
+        let rows = Rows::between(&self.window, cutoff, inner, [1.0, 1.0]);
+        rows.relaxed(&self.level_stencil(), compliance)
+    }
+
+    /// [`ScaleSplit::uneven_level_stencil`] of a solid that relaxes, with lengths in elements.
+    #[must_use]
+    pub fn relaxed_uneven_level(&self, inner: f64, sides: [f64; 2], compliance: &SlidingCompliance) -> RelaxedStencil {
+        let rows = Rows::between(&self.window, self.params.cutoff, inner, sides);
+        rows.relaxed(&self.uneven_level_stencil(inner, sides), compliance)
     }
 
     /// Filter along one axis between the finest level and a level with other elements.

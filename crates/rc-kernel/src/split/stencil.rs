@@ -47,6 +47,13 @@ impl Stencil {
         Self { radius, weights: weights.collect() }
     }
 
+    /// A stencil that need not be symmetric, from its weight at any (dx, dy).
+    pub(super) fn of_any(radius: usize, weight: impl Fn(i32, i32) -> f64) -> Self {
+        let reach = radius as i32;
+        let weights = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)));
+        Self { radius, weights: weights.map(|(dx, dy)| weight(dx, dy)).collect() }
+    }
+
     /// Largest offset along x and along y.
     #[must_use]
     pub fn radius(&self) -> usize {
@@ -82,7 +89,7 @@ pub(super) fn love(window: &Window, cutoff: usize) -> Stencil {
 /// Mean of `Ψ(r/c)/(π r)` over the unit square around `centre`.
 ///
 /// The window ends at r = c with a kink. A square that contains a part of the kink is halved a few times.
-fn mean_remainder(window: &Window, cutoff: f64, DVec2 { x, y }: DVec2, rule: &[(f64, f64)]) -> f64 {
+pub(super) fn mean_remainder(window: &Window, cutoff: f64, DVec2 { x, y }: DVec2, rule: &[(f64, f64); POINTS]) -> f64 {
     let (nearest, farthest) = ((x - 0.5).max(0.0).hypot((y - 0.5).max(0.0)), (x + 0.5).hypot(y + 0.5));
     let parts = if nearest < cutoff && cutoff < farthest { 8 } else { 2 };
     let side = 1.0 / f64::from(parts);
@@ -114,12 +121,14 @@ pub(super) fn level(window: &Window, cutoff: usize) -> Stencil {
 ///
 /// The smaller side is 1.
 pub(super) fn between(window: &Window, cutoff: usize, inner: f64, [width, height]: [f64; 2]) -> Stencil {
-    let c = cutoff as f64;
+    let kernel = remainder_between(window, cutoff as f64, inner);
+    Stencil::of_rectangles(cutoff, |dx, dy| width * height * kernel((width * dx as f64).hypot(height * dy as f64)))
+}
+
+/// The kernel between the cutoffs `inner` and `cutoff`, at the distance r.
+pub(super) fn remainder_between(window: &Window, cutoff: f64, inner: f64) -> impl Fn(f64) -> f64 + '_ {
     let remainder = |r: f64, c: f64| window.rise_over(r / c) / c;
-    Stencil::of_rectangles(cutoff, |dx, dy| {
-        let r = (width * dx as f64).hypot(height * dy as f64);
-        FRAC_1_PI * width * height * (remainder(r, inner) - remainder(r, c))
-    })
+    move |r| FRAC_1_PI * (remainder(r, inner) - remainder(r, cutoff))
 }
 
 #[cfg(test)]
