@@ -180,7 +180,10 @@ impl Rows {
         let modes: Vec<(f64, f64, Vec<Vec<f64>>)> = compliance
             .modes
             .iter()
-            .map(|&[part, length]| (part, length, self.rows.iter().map(|row| averages(row, length.abs(), n)).collect()))
+            .map(|&[part, length]| {
+                let mut moments = Moments::new(length.abs());
+                (part, length, self.rows.iter().map(|row| averages(row, &mut moments, n)).collect())
+            })
             .collect();
         let near = Stencil::of_any(self.radius, |dx, dy| {
             let row = dy.unsigned_abs() as usize;
@@ -201,10 +204,10 @@ impl Rows {
 }
 
 /// (F K)(x) in a row at x = r, r - 1, …, -(r + 1), `n` = 2 r + 2 values.
-fn averages(row: &[Panel], length: f64, n: usize) -> Vec<f64> {
+fn averages(row: &[Panel], moments: &mut Moments, n: usize) -> Vec<f64> {
+    let length = moments.length;
     let decay = (-length.recip()).exp();
     let start = (n / 2 - 1) as f64;
-    let mut moments = Moments { length, known: Vec::new() };
     let (mut value, mut values) = (0.0, Vec::with_capacity(n));
     let mut panels: Vec<Panel> = row.iter().map(Panel::mirrored).collect();
     panels.reverse();
@@ -225,10 +228,15 @@ fn averages(row: &[Panel], length: f64, n: usize) -> Vec<f64> {
 /// Moments of an exponential over panels: ∫ exp(-s/ℓ) T_k ds/ℓ, with T_k on the panel 0 ≤ s ≤ width.
 struct Moments {
     length: f64,
+    rule: [(f64, f64); TERMS],
     known: Vec<(f64, [f64; TERMS])>,
 }
 
 impl Moments {
+    fn new(length: f64) -> Self {
+        Self { length, rule: gauss_legendre(), known: Vec::new() }
+    }
+
     fn of(&mut self, width: f64) -> [f64; TERMS] {
         if let Some((_, moments)) = self.known.iter().find(|(other, _)| *other == width) {
             return *moments;
@@ -238,7 +246,7 @@ impl Moments {
         let n = (end / (RESOLVED * self.length)).ceil().max(1.0);
         let part = end / n;
         for i in 0..n as usize {
-            for (x, weight) in gauss_legendre::<TERMS>() {
+            for (x, weight) in self.rule {
                 let s = part * (i as f64 + 0.5 + 0.5 * x);
                 let weight = weight * part / self.length * (-s / self.length).exp();
                 for (moment, wave) in moments.iter_mut().zip(polynomials::<TERMS>(2.0 * s / width - 1.0)) {
@@ -349,11 +357,13 @@ mod tests {
         let split = ScaleSplit::new(SplitParams::certified());
         for length in LENGTHS {
             let compliance = compliance(&[length]);
-            for (relaxed, at_rest) in [
-                (split.relaxed_love(&compliance), split.love_stencil()),
-                (split.relaxed_level(&compliance), split.level_stencil()),
+            // The sum over samples of a level has aliases, which relax.
+            for (relaxed, at_rest, bound) in [
+                (split.relaxed_love(&compliance), split.love_stencil(), 1e-11),
+                (split.relaxed_level(&compliance), split.level_stencil(), 1e-5),
             ] {
-                assert!((relaxed.sum() / at_rest.sum() - 1.0).abs() < 1e-6, "{length}: {}", relaxed.sum());
+                let ratio = relaxed.sum() / at_rest.sum() - 1.0;
+                assert!(ratio.abs() < bound, "{length}: {ratio:e}");
                 let radius = relaxed.near.radius() as i32;
                 let cells = (-radius..=radius).flat_map(|dy| (-radius..=radius).map(move |dx| (dx, dy)));
                 let least = cells.map(|(dx, dy)| relaxed.near.weight(dx, dy)).fold(f64::INFINITY, f64::min);
