@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use rc_core::{Grid, Kernel, SplitByScale};
+use rc_kernel::SlidingCompliance;
 
 use crate::problem::adaptive_error::AdaptiveError;
 use crate::tiles::base::Base;
@@ -19,6 +20,8 @@ const RESOLVED: f64 = 0.6;
 pub(crate) struct Solid {
     base: Base,
     deviation: Option<Arc<Deviation>>,
+    /// What a surface that slides along x makes of it, with lengths in λ.
+    sliding: Option<Arc<SlidingCompliance>>,
 }
 
 /// The deviation of a solid that is not the half-space.
@@ -31,7 +34,7 @@ struct Deviation {
 impl<B: Into<Base>> From<B> for Solid {
     /// The half-space.
     fn from(base: B) -> Self {
-        Self { base: base.into(), deviation: None }
+        Self { base: base.into(), deviation: None, sliding: None }
     }
 }
 
@@ -55,7 +58,20 @@ impl Solid {
         let waves = (0..=grid.ny() / 2).flat_map(|ky| (0..=grid.nx() / 2).map(move |kx| (kx, ky)));
         let at = |(kx, ky)| if (kx, ky) == (0, 0) { 0.0 } else { split.deviation(wavenumber(grid, kx, ky)) };
         let deviation = Deviation { symbol: waves.map(at).collect(), curvature: split.curvature() };
-        Ok(Self { base, deviation: Some(Arc::new(deviation)) })
+        Ok(Self { base, deviation: Some(Arc::new(deviation)), sliding: None })
+    }
+
+    /// The solid, of a material that relaxes while a surface slides over it along x. Lengths are in λ.
+    ///
+    /// The cell is periodic, and each level has twice the elements of the one below along a side.
+    #[cfg_attr(not(test), expect(dead_code, reason = "solves on tiles are of a solid at rest"))]
+    pub(crate) fn under_sliding(self, compliance: SlidingCompliance) -> Self {
+        Self { sliding: Some(Arc::new(compliance)), ..self }
+    }
+
+    /// What a sliding surface makes of the solid, with lengths in λ. `None` at rest.
+    pub(crate) fn sliding(&self) -> Option<&SlidingCompliance> {
+        self.sliding.as_deref()
     }
 
     /// The base grid.

@@ -174,7 +174,7 @@ impl TileExtension {
         let len = rc_fft::BLOCK_ROWS * self.hierarchy.base().period()[0];
         let values = &self.rows;
         write_rows(convolution, &|i, rows| rows.copy_from_slice(&values[i * len..][..rows.len()]));
-        convolution.apply_symbol(&tables.base);
+        tables.base.apply(convolution);
         let tasks = Tasks::new(self.rows.chunks_mut(len));
         read_rows(convolution, &|i, rows| tasks.run(i, |to: &mut [f32]| to.copy_from_slice(rows)));
     }

@@ -24,6 +24,9 @@ pub(crate) mod sizes;
 pub(crate) mod stencil;
 pub(crate) mod tables;
 #[cfg(test)]
+mod tail_tests;
+pub(crate) mod tails;
+#[cfg(test)]
 mod tests;
 pub(crate) mod tile_operator;
 pub(crate) mod tile_values;

@@ -7,7 +7,7 @@ use rc_comm::Packed;
 use rc_fft::TransformReal;
 
 /// The number types `f32` and `f64`.
-pub(crate) trait Arithmetic: TransformReal + Packed + Default + From<f32> {
+pub(crate) trait Arithmetic: TransformReal + Packed + Default + From<f32> + Into<f64> {
     /// The number nearest to one in double precision.
     fn rounded(value: f64) -> Self;
 

@@ -3,9 +3,10 @@
 use std::f64::consts::PI;
 
 use rc_core::Grid;
-use rc_fft::SymbolTable;
-use rc_kernel::{CoarseElement, Filter, ScaleSplit, Stencil};
+use rc_fft::{SymbolTable, WaveTable};
+use rc_kernel::{CoarseElement, Filter, RelaxedStencil, ScaleSplit, Stencil};
 
+use crate::grid::factors::Factors;
 use crate::grid::response::table_of_response;
 use crate::tiles::base::Base;
 use crate::tiles::ladder;
@@ -14,6 +15,7 @@ use crate::tiles::operator::coarse::CoarseTable;
 use crate::tiles::operator::hierarchy::Reach;
 use crate::tiles::operator::sizes::{Real, Sizes};
 use crate::tiles::operator::stencil::Taps;
+use crate::tiles::operator::tails::TailTable;
 use crate::tiles::operator::transfer::Transfer;
 use crate::tiles::operator::uneven::Uneven;
 use crate::tiles::solid::{Solid, wavenumber};
@@ -24,9 +26,11 @@ use crate::tiles::solid::{Solid, wavenumber};
 #[derive(Clone)]
 pub(crate) struct Tables<T> {
     pub(crate) sizes: Sizes<T>,
-    pub(crate) base: SymbolTable<T>,
+    pub(crate) base: Factors<T>,
     /// Stencils of levels 1 to K, and transfers to the next coarser level.
     pub(crate) levels: Vec<(Taps<T>, Transfer<T>)>,
+    /// Tails of the stencils of levels 1 to K under a sliding surface. Empty at rest.
+    pub(crate) tails: Vec<TailTable<T>>,
     /// The transfer between the finest level and the next coarser one, if they are uneven.
     ///
     /// The coarser level does not have half as many elements along a side then.
@@ -56,7 +60,7 @@ impl<T: Real> Tables<T> {
 pub(crate) struct Prepared<T> {
     sizes: Sizes<T>,
     solid: Solid,
-    symbol: SymbolTable<T>,
+    symbol: Factors<T>,
     /// Stencil and transfer of the finest level. Those below are of levels between it and the base grid.
     finest: (Stencil, Transfer<T>),
     between: (Stencil, Transfer<T>),
@@ -111,7 +115,7 @@ impl<T: Real> Prepared<T> {
         Self {
             sizes,
             solid: base.into(),
-            symbol,
+            symbol: Factors::AtRest(symbol),
             finest: part.clone(),
             between: part,
             coarse: Vec::new(),
@@ -140,13 +144,16 @@ impl<T: Real> Prepared<T> {
         // A preconditioner halves every level.
         let is_uneven = matches!(self.scale, Scale::Side) && !ladder::is_even(self.base().grid(), finest);
         let below = is_uneven.then(|| self.below_uneven(finest, n_levels));
-        let (mut levels, mut sum) = (Vec::with_capacity(n_levels), 0.0);
+        let (mut levels, mut tails, mut sum) = (Vec::with_capacity(n_levels), Vec::new(), 0.0);
         for level in 1..=n_levels {
             let (stencil, transfer) = if level == n_levels { &self.finest } else { &self.between };
             let stencil = below.as_ref().filter(|_| level + 1 == n_levels).unwrap_or(stencil);
             let factor = self.factor(level, (level == n_levels && is_uneven).then_some(finest));
-            sum += factor * stencil.sum();
-            levels.push((Taps::new(stencil, factor, self.sizes.around), transfer.clone()));
+            let relaxed = self.relaxed(level, n_levels);
+            sum += factor * relaxed.as_ref().map_or_else(|| stencil.sum(), RelaxedStencil::sum);
+            let near = relaxed.as_ref().map_or(stencil, |relaxed| &relaxed.near);
+            levels.push((Taps::new(near, factor, self.sizes.around), transfer.clone()));
+            tails.extend(relaxed.map(|relaxed| TailTable::new(&relaxed.tails, factor, relaxed.near.radius())));
         }
         let mut base = if is_uneven && n_levels == 1 {
             remainder_symbol(&self.split, &self.solid, self.cutoff() * finest.spacing().min_element())
@@ -162,11 +169,26 @@ impl<T: Real> Prepared<T> {
             Scale::Inverse => base.set_mean(T::rounded(0.0)),
         }
         let uneven = is_uneven.then(|| self.uneven(finest, n_levels));
-        Tables { sizes: self.sizes, base, levels, uneven, coarse: self.coarse_tables(n_levels) }
+        Tables { sizes: self.sizes, base, levels, tails, uneven, coarse: self.coarse_tables(n_levels) }
     }
 
     fn base(&self) -> Base {
         self.solid.base()
+    }
+
+    /// The stencil of a level under a sliding surface. `None` at rest.
+    fn relaxed(&self, level: usize, n_levels: usize) -> Option<RelaxedStencil> {
+        let compliance = self.solid.sliding().filter(|_| matches!(self.scale, Scale::Side))?;
+        let spacing = ladder::doubled(self.base().grid(), level).spacing();
+        let compliance = compliance.in_units_of(spacing.x);
+        if level == n_levels {
+            return Some(self.split.relaxed_love(&compliance));
+        }
+        let sides = spacing / spacing.min_element();
+        Some(match has_squares(self.base().grid()) {
+            true => self.split.relaxed_level(&compliance),
+            false => self.split.relaxed_uneven_level(0.5 * self.cutoff(), sides.into(), &compliance),
+        })
     }
 
     /// The cutoff, in elements of a level.
@@ -220,20 +242,26 @@ impl<T: Real> Prepared<T> {
 /// The remainder of the split at `cutoff`, in λ, on the base grid.
 ///
 /// It is that without images where borders are free, and has the deviation of the solid otherwise.
-fn remainder_symbol<T: Real>(split: &ScaleSplit, solid: &Solid, cutoff: f64) -> SymbolTable<T> {
+///
+/// Under a sliding surface, each wave has the compliance of its own.
+fn remainder_symbol<T: Real>(split: &ScaleSplit, solid: &Solid, cutoff: f64) -> Factors<T> {
     let base = solid.base();
     if base.is_free() {
         let (spacing, reach) = (base.grid().spacing(), base.period().map(|n| n / 2 + 1));
-        return table_of_response(base.periodic_grid(), reach, &|ix, iy| {
+        return Factors::AtRest(table_of_response(base.periodic_grid(), reach, &|ix, iy| {
             let r = (spacing.x * ix as f64).hypot(spacing.y * iy as f64);
             spacing.x * spacing.y * split.remainder(r, cutoff)
-        });
+        }));
     }
     let base = base.grid();
-    SymbolTable::new(base, |kx: usize, ky: usize| {
+    let at_rest = |kx: usize, ky: usize| {
         let q = wavenumber(base, kx, ky);
         if q == 0.0 { 0.0 } else { split.remainder_symbol(q, cutoff) + solid.deviation(kx, ky) }
-    })
+    };
+    let Some(compliance) = solid.sliding() else { return Factors::AtRest(SymbolTable::new(base, at_rest)) };
+    Factors::Sliding(WaveTable::new(base, |kx, ky| {
+        compliance.at(base.angular_wave(kx, ky).x) * at_rest(kx.unsigned_abs() as usize, ky.unsigned_abs() as usize)
+    }))
 }
 
 /// The stencil of levels between the base grid and the finest.

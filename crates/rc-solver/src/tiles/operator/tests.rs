@@ -9,23 +9,23 @@ use rc_kernel::{PeriodicLove, ScaleSplit, SplitParams};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, quarters};
 
 use crate::descent::operators::{BlockOperator, PreconditionedOperator, read_blocks, write_blocks};
-use crate::tiles::base::Base;
 use crate::tiles::operator::corrections::TileCorrections;
 use crate::tiles::operator::hierarchy::Hierarchy;
 use crate::tiles::operator::sizes::Real;
 use crate::tiles::operator::tables::Prepared;
 use crate::tiles::operator::tile_operator::TileOperator;
 use crate::tiles::roughness::roughness;
+use crate::tiles::solid::Solid;
 use crate::tiles::split::GapSplit;
 
 /// Radii of spots a few elements of a base grid wide.
-const SMALL: [f64; 2] = [0.01, 0.06];
+pub(super) const SMALL: [f64; 2] = [0.01, 0.06];
 
 /// Radii of spots that have larger elements inside.
 const LARGE: [f64; 2] = [0.06, 0.12];
 
 /// Round contacts with Hertz's pressure, at random places, as in contact problems.
-fn spots(tiles: &TileSet, [least, greatest]: [f64; 2], seed: u64) -> Vec<f64> {
+pub(super) fn spots(tiles: &TileSet, [least, greatest]: [f64; 2], seed: u64) -> Vec<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let side = tiles.sides()[0] as f64;
     let centres: Vec<[f64; 3]> =
@@ -45,7 +45,7 @@ fn spots(tiles: &TileSet, [least, greatest]: [f64; 2], seed: u64) -> Vec<f64> {
 }
 
 /// The tiles of a level that any of the spots touches, and some at random.
-fn tiles_of_spots(side: usize, radii: [f64; 2], seed: u64) -> TileSet {
+pub(super) fn tiles_of_spots(side: usize, radii: [f64; 2], seed: u64) -> TileSet {
     let all = TileSet::full([side, side]);
     let p = spots(&all, radii, seed);
     let mut rng = ChaCha8Rng::seed_from_u64(seed + 100);
@@ -58,19 +58,21 @@ fn tiles_of_spots(side: usize, radii: [f64; 2], seed: u64) -> TileSet {
 }
 
 fn apply<T: Real + Into<f64>>(split: &ScaleSplit, base: usize, elements: Elements, p: &[f64]) -> Vec<f64> {
-    apply_above::<T>(split, Grid::square(base).expect("a grid").into(), elements, p)
+    apply_above::<T>(split, Grid::square(base).expect("a grid"), elements, p)
 }
 
 pub(super) fn apply_above<T: Real + Into<f64>>(
     split: &ScaleSplit,
-    base: Base,
+    solid: impl Into<Solid>,
     elements: Elements,
     p: &[f64],
 ) -> Vec<f64> {
+    let solid = solid.into();
+    let base = solid.base();
     let n_coarse = elements.levels().len() - 1;
     let [nx, ny] = elements.finest().sides();
     let finest = base.grid().with_elements(nx, ny).expect("a grid");
-    let prepared = Prepared::<T>::displacement(split, base, n_coarse);
+    let prepared = Prepared::<T>::displacement(split, solid, n_coarse);
     let hierarchy = Arc::new(Hierarchy::new(base, elements, prepared.reach()));
     let mut operator = TileOperator::new(hierarchy, prepared.tables(finest));
     write_blocks(&mut operator, p.chunks(BLOCK_CELLS), |p, cells| {

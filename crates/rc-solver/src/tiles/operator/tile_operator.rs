@@ -24,6 +24,7 @@ use crate::tiles::operator::passes::{
 };
 use crate::tiles::operator::sizes::Real;
 use crate::tiles::operator::tables::Tables;
+use crate::tiles::operator::tails::TileRows;
 use crate::tiles::operator::tile_values::TileValues;
 use crate::tiles::part::{Part, blocks, own_blocks};
 
@@ -42,12 +43,19 @@ pub(crate) struct TileOperator<T, B> {
     displacements: Vec<Vec<T>>,
     /// Values of the ghosts of each level of coarse elements.
     ghosts: Vec<Vec<T>>,
+    /// The rows of tiles of the levels above the base grid, with the tails of stencils there. Empty at rest.
+    tails: Vec<(TileRows, Vec<T>)>,
 }
 
 impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
     /// The operator with the `tables` of the levels of `hierarchy`.
+    ///
+    /// Under a sliding surface, all elements have one size and are on one rank.
     pub(crate) fn new(hierarchy: Arc<Hierarchy>, tables: B) -> Self {
+        let above_base = hierarchy.levels[1..].iter().zip(&tables.borrow().tails);
+        let tails = above_base.map(|(part, table)| (table.rows(part.tiles()), Vec::new())).collect();
         Self {
+            tails,
             arch: match Instructions::of_process() {
                 Instructions::Best => Arch::new(),
                 Instructions::Scalar | Instructions::Sse => Arch::Scalar,
@@ -72,6 +80,9 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
             self.displacements = below_finest.iter().map(zeros).collect();
             self.ghosts = hierarchy.leaves.iter().map(|leaves| vec![T::default(); leaves.ghosts.n_cells()]).collect();
             self.source = vec![T::default(); hierarchy.elements().len()];
+            for ((_, tails), part) in self.tails.iter_mut().zip(&hierarchy.levels[1..]) {
+                *tails = zeros(part);
+            }
         }
     }
 
@@ -144,7 +155,7 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
             density.copy(places, &mut cells);
             tiles_to_rows(&cells, rows, side);
         });
-        self.convolution.apply_symbol(&tables.base);
+        tables.base.apply(&mut self.convolution);
         let blocks = Tasks::new(self.displacements[0].chunks_mut(BLOCK_ROWS * side));
         read_rows(&self.convolution, &|i, rows| blocks.run(i, |cells| rows_to_tiles(rows, cells, side)));
     }
@@ -163,7 +174,20 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
             parallel::for_each(own_blocks(&levels[level], &mut finer[0]), |(places, cells)| {
                 (tables.sizes.passes.displace)(arch, &pass, Targets { places, cells });
             });
+            if let Some((rows, tails)) = self.tails.get(level - 1) {
+                rows.add_all(tails, &mut finer[0]);
+            }
             levels[level].exchange(&mut finer[0]);
+        }
+    }
+
+    /// Computes the tails of the stencils of all levels.
+    fn compute_tails(&mut self) {
+        let tables = self.tables.borrow();
+        for (i, ((rows, tails), table)) in self.tails.iter_mut().zip(&tables.tails).enumerate() {
+            let density = self.densities.get(i + 1).unwrap_or(&self.source);
+            let density = TileValues::new(density, self.hierarchy.levels[i + 1].tiles());
+            rows.compute(self.arch, table, density, tails);
         }
     }
 
@@ -174,13 +198,17 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
         let table = &tables.levels[level - 1];
         let density = TileValues::new(&self.source, levels[level].tiles());
         let coarser = TileValues::new(&self.displacements[level - 1], levels[level - 1].tiles());
-        let targets = Targets { places: &levels[level].tiles().places()[tiles], cells };
+        let first = tiles.start;
+        let targets = Targets { places: &levels[level].tiles().places()[tiles], cells: &mut *cells };
         if let Some(uneven) = &tables.uneven {
             let pass = UnevenDisplacement { taps: &table.0, uneven, density, coarser };
             (tables.sizes.passes.displace_uneven)(self.arch, &pass, targets);
         } else {
             let pass = Displacement { table, density, coarser };
             (tables.sizes.passes.displace)(self.arch, &pass, targets);
+        }
+        if let Some((rows, tails)) = self.tails.last() {
+            rows.add(first, tails, cells);
         }
     }
 
@@ -232,6 +260,7 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> BlockOperator<T> for TileOperator<T, 
         self.set_ghosts();
         self.restrict();
         self.convolve_base();
+        self.compute_tails();
         self.prolong();
     }
 
@@ -254,6 +283,7 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> BlockOperator<T> for TileOperator<T, 
 
     fn release(&mut self) {
         (self.source, self.densities, self.displacements, self.ghosts) = Default::default();
+        self.tails.iter_mut().for_each(|(_, tails)| *tails = Vec::new());
     }
 }
 
