@@ -90,7 +90,7 @@ pub use heights::{HeightField, HeightSource};
 pub use histogram::Histogram;
 pub use num_complex::Complex64;
 pub use progress::{Event, Observer, Rows, Silent, Snapshot};
-pub use sliding::{Compliance, Sliding};
+pub use sliding::{Compliance, Sliding, SlidingCompliance, SlidingModes};
 pub use split::SplitByScale;
 pub use traits::{Boundary, ComplexSymbol, EdgeBias, Kernel, Operator, Symbol};
 pub use units::{Elasticity, PeriodicCell, UnitError, Units};

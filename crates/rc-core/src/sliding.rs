@@ -44,3 +44,40 @@ impl std::fmt::Debug for Sliding {
         f.debug_struct("Sliding").field("velocity", &self.velocity).finish_non_exhaustive()
     }
 }
+
+/// What a sliding surface makes of the compliance of a wave along x: J0 + Σ J/(1 - i q ℓ).
+///
+/// Lengths are in any unit. With ℓ > 0 the displacement at x follows the pressure at larger x. With ℓ < 0 it follows
+/// that at smaller x. J0 and all J are not negative.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlidingCompliance {
+    /// J0, the part that follows at once.
+    pub instantaneous: f64,
+    /// Pairs of J and ℓ.
+    pub modes: Vec<[f64; 2]>,
+}
+
+impl SlidingCompliance {
+    /// The compliance of a wave of `q` radians per unit of length along x.
+    #[must_use]
+    pub fn at(&self, q: f64) -> Complex64 {
+        let modes = self.modes.iter().map(|&[part, length]| part / Complex64::new(1.0, -q * length));
+        self.instantaneous + modes.sum::<Complex64>()
+    }
+
+    /// The same, with lengths in another unit.
+    #[must_use]
+    pub fn in_units_of(&self, unit: f64) -> Self {
+        let modes = self.modes.iter().map(|&[part, length]| [part, length / unit]).collect();
+        Self { instantaneous: self.instantaneous, modes }
+    }
+}
+
+/// A solid of finitely many retardation times under a surface that slides along x.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlidingModes {
+    /// The compliance J~ = 1/E~ of a wave, relative to that of the relaxed solid. Lengths are in λ.
+    pub compliance: SlidingCompliance,
+    /// The inverse 1/Re E~ of the storage modulus: a real factor, as lengths come in pairs ℓ and -ℓ of the same part.
+    pub storage: SlidingCompliance,
+}

@@ -6,7 +6,7 @@ use glam::DVec2;
 use num_complex::Complex64;
 
 use crate::grid::Grid;
-use crate::sliding::Sliding;
+use crate::sliding::{Sliding, SlidingModes};
 use crate::split::SplitByScale;
 
 /// Eigenvalue of an elastic operator on one grid, as a function of (|kx|, |ky|).
@@ -173,6 +173,13 @@ pub trait Kernel: Sync {
     /// E* is the relaxed modulus, and [`Kernel::symbol`] the symbol at rest.
     fn sliding_symbol(&self, grid: Grid) -> Option<ComplexSymbol<'_>> {
         let _ = grid;
+        None
+    }
+
+    /// The retardation of the solid, if it has finitely many times and the velocity is along x.
+    ///
+    /// Methods that split the response by scale need it. The compliance is that of [`Kernel::sliding_symbol`].
+    fn sliding_modes(&self) -> Option<SlidingModes> {
         None
     }
 

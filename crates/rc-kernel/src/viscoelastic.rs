@@ -2,8 +2,11 @@
 
 use std::sync::Arc;
 
-use rc_core::{ComplexSymbol, DVec2, EdgeBias, Grid, Kernel, Sliding, Symbol};
+use rc_core::{
+    ComplexSymbol, DVec2, EdgeBias, Grid, Kernel, Sliding, SlidingCompliance, SlidingModes, SplitByScale, Symbol,
+};
 
+use crate::creep::Retardation;
 use crate::relaxation::Relaxation;
 
 /// The solid of another kernel, of a material that relaxes, under a surface that slides over it.
@@ -35,14 +38,16 @@ use crate::relaxation::Relaxation;
 pub struct Viscoelastic<K> {
     relaxed: K,
     sliding: Sliding,
+    modes: Option<SlidingModes>,
 }
 
 impl<K: Kernel> Viscoelastic<K> {
     /// The solid of `relaxed` with this material. The surface has this `velocity`, in λ per unit of time.
     #[must_use]
     pub fn new(relaxed: K, material: &Relaxation, velocity: DVec2) -> Self {
+        let modes = (velocity.y == 0.0).then(|| modes(material, velocity.x)).flatten();
         let material = material.clone();
-        Self { relaxed, sliding: Sliding::new(velocity, Arc::new(move |omega| material.compliance(omega))) }
+        Self { relaxed, modes, sliding: Sliding::new(velocity, Arc::new(move |omega| material.compliance(omega))) }
     }
 }
 
@@ -63,6 +68,10 @@ impl<K: Kernel + Clone + Send + Sync + 'static> Kernel for Viscoelastic<K> {
         Some(self.relaxed.symbol_while(&self.sliding, grid))
     }
 
+    fn sliding_modes(&self) -> Option<SlidingModes> {
+        self.modes.clone()
+    }
+
     fn uniform_displacement(&self) -> Option<f64> {
         self.relaxed.uniform_displacement()
     }
@@ -75,7 +84,48 @@ impl<K: Kernel + Clone + Send + Sync + 'static> Kernel for Viscoelastic<K> {
         self.relaxed.edge_bias(grid)
     }
 
+    /// The split of the relaxed solid, which [`Kernel::symbol`] is that of.
+    fn split(&self) -> Option<&dyn SplitByScale> {
+        self.relaxed.split()
+    }
+
     fn to_shared(&self) -> Option<Arc<dyn Kernel + Send + Sync>> {
         Some(Arc::new(self.clone()))
+    }
+}
+
+/// The retardation of a material under a surface with this velocity along x. `None` if it is not a Prony series.
+fn modes(material: &Relaxation, velocity: f64) -> Option<SlidingModes> {
+    let (relaxed, storage) = (material.retardation()?, material.storage_retardation()?);
+    let of = |Retardation { instantaneous, modes }: Retardation, sides: &[f64]| {
+        // Nothing lags at rest.
+        let (at_once, modes) = if velocity == 0.0 { (1.0, Vec::new()) } else { (instantaneous, modes) };
+        let part = (sides.len() as f64).recip();
+        let on_side = |&[j, rho]: &[f64; 2]| sides.iter().map(move |side| [part * j, side * velocity * rho]);
+        SlidingCompliance { instantaneous: at_once, modes: modes.iter().flat_map(on_side).collect() }
+    };
+    Some(SlidingModes { compliance: of(relaxed, &[1.0]), storage: of(storage, &[1.0, -1.0]) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Love;
+
+    #[test]
+    fn modes_are_those_of_the_symbol() {
+        let rubber = Relaxation::prony(&[[4.0, 0.01], [5.0, 0.3]]).expect("a material");
+        for velocity in [0.0, 0.7, -0.2] {
+            let kernel = Viscoelastic::new(Love, &rubber, velocity * DVec2::X);
+            let modes = kernel.sliding_modes().expect("a series along x");
+            for q in [0.0, 1.0, -30.0, 1e4] {
+                let modulus = rubber.modulus(q * velocity);
+                assert!((modes.compliance.at(q) - modulus.inv()).norm() < 1e-14);
+                assert!((modes.storage.at(q) - modulus.re.recip()).norm() < 1e-14);
+            }
+        }
+        assert_eq!(Viscoelastic::new(Love, &rubber, DVec2::Y).sliding_modes(), None);
+        let fractional = Relaxation::fractional(0.5, 10.0, 1.0).expect("a material");
+        assert_eq!(Viscoelastic::new(Love, &fractional, DVec2::X).sliding_modes(), None);
     }
 }

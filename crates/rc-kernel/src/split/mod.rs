@@ -36,13 +36,14 @@ mod window;
 pub use coarse::{CoarseElement, CoarseFilter};
 pub use filter::Filter;
 pub use params::SplitParams;
-pub use relaxed::{RelaxedStencil, SlidingCompliance, Tail};
+pub use relaxed::{RelaxedStencil, Tail};
 pub use stencil::Stencil;
 pub use uneven::UnevenFilter;
 
 use std::sync::Arc;
 
 use kept::Kept;
+use rc_core::SlidingCompliance;
 use relaxed::Rows;
 use window::Window;
 
@@ -181,6 +182,14 @@ impl ScaleSplit {
     #[must_use]
     pub fn inverse_stencil(&self, radius: usize) -> Stencil {
         inverse::stencil(&self.level_filter(), radius)
+    }
+
+    /// [`ScaleSplit::inverse_stencil`] of |q|/2 divided by a compliance that is real.
+    ///
+    /// Lengths of the compliance are in elements.
+    #[must_use]
+    pub fn inverse_stencil_of(&self, radius: usize, compliance: &SlidingCompliance) -> Stencil {
+        inverse::stencil_along_x(&self.level_filter(), radius, &|q| compliance.at(q).re.recip())
     }
 }
 

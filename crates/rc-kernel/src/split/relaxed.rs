@@ -12,7 +12,7 @@
 //! The filters between levels stay those of the solid at rest. F commutes with them up to waves that they damp, and no
 //! wave passes F with a factor above 1, so no wave is farther off than at rest (tests below).
 
-use rc_core::{Complex64, DVec2};
+use rc_core::{DVec2, SlidingCompliance};
 
 use super::params::SplitParams;
 use super::stencil::{Stencil, mean_remainder, remainder_between};
@@ -38,34 +38,6 @@ const RESOLVED: f64 = 2.0;
 
 /// A tail is left out if its weights are below this part of the greatest weight of the stencil at rest.
 const NEGLIGIBLE: f64 = 1e-18;
-
-/// What a sliding surface makes of the compliance of a wave along x: J0 + Σ J/(1 - i q ℓ).
-///
-/// Lengths are in any unit. With ℓ > 0 the displacement at x follows the pressure at larger x. With ℓ < 0 it follows
-/// that at smaller x. J0 and all J are not negative.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SlidingCompliance {
-    /// J0, the part that follows at once.
-    pub instantaneous: f64,
-    /// Pairs of J and ℓ.
-    pub modes: Vec<[f64; 2]>,
-}
-
-impl SlidingCompliance {
-    /// The compliance of a wave of `q` radians per unit of length along x.
-    #[must_use]
-    pub fn at(&self, q: f64) -> Complex64 {
-        let modes = self.modes.iter().map(|&[part, length]| part / Complex64::new(1.0, -q * length));
-        self.instantaneous + modes.sum::<Complex64>()
-    }
-
-    /// The same, with lengths in another unit.
-    #[must_use]
-    pub fn in_units_of(&self, unit: f64) -> Self {
-        let modes = self.modes.iter().map(|&[part, length]| [part, length / unit]).collect();
-        Self { instantaneous: self.instantaneous, modes }
-    }
-}
 
 /// A stencil of finite reach, with tails that decay along x.
 #[derive(Clone, Debug, PartialEq)]
@@ -264,7 +236,7 @@ mod tests {
     use std::f64::consts::TAU;
     use std::sync::Arc;
 
-    use rc_core::{Grid, Kernel, Sliding};
+    use rc_core::{Complex64, Grid, Kernel, Sliding};
 
     use super::*;
     use crate::{Love, ScaleSplit};

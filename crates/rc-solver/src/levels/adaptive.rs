@@ -22,6 +22,7 @@ use crate::levels::grids::{GridLevels, coarser_heights};
 use crate::levels::nested::{Begun, History, Levels, Nested};
 use crate::levels::operator_error::{PressureScale, can_certify, certifying_split};
 use crate::levels::tiles::TileLevels;
+use crate::sliding::levels::SlidingLevels;
 use crate::tiles::contact_area::Values;
 use crate::tiles::ladder::sides_of;
 use crate::tiles::patch::displacement_of_patch;
@@ -99,7 +100,13 @@ impl<'a> TileLevels<'a> {
         let (heights, n_above) = (self.data.heights.base(), self.ladder().n_levels());
         let coarser = coarser_heights(heights, self.boundary());
         let grids = GridLevels::new(self.kernel.get(), &self.problem, (heights, &coarser), n_above);
-        let ((descent, outcome), mut history) = grids.solve_all(&self.nested(grids.n_levels(), observer));
+        let (nested, kernel) = (self.nested(grids.n_levels(), observer), self.kernel.get());
+        let ((descent, outcome), mut history) = if kernel.sliding_velocity().is_some() {
+            let ((sliding, outcome), history) = SlidingLevels { grids, kernel }.solve_all(&nested, n_above);
+            ((sliding.descent, outcome), history)
+        } else {
+            grids.solve_all(&nested)
+        };
         let function = edge_function(&descent);
         let tile_fraction = tile_fraction(heights.grid(), &function, (TILE >> n_above).max(1));
         let function = to_tiles(heights.grid(), &function);

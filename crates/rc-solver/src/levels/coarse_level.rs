@@ -10,6 +10,7 @@ use crate::descent::operators::LevelOperators;
 use crate::descent::outcome::Outcome;
 use crate::descent::run::{DescentObserver, Goal};
 use crate::descent::state::{Descent, Start};
+use crate::levels::tile_descent::{StorageTables, TileDescent};
 use crate::levels::tiles::TileLevels;
 use crate::tiles::element_heights::element_heights;
 use crate::tiles::mesh::Mesh;
@@ -63,15 +64,18 @@ pub(crate) fn solve_coarse_level(
     let hierarchy = levels.hierarchy(&start.elements, kernels.quick().reach());
     let response = kernels.quick().tables(grid);
     let mut preconditioner = kernels.preconditioner().tables(grid);
+    let mut storage = kernels.quick_storage().map(|quick| StorageTables::new(quick.tables(grid), &preconditioner));
+    let storage = storage.as_mut().map(|storage| storage.corrections(Arc::clone(&hierarchy)));
     let operators = LevelOperators {
         corrections: Box::new(TileCorrections::new(Arc::clone(&hierarchy), &response, &mut preconditioner)),
         fresh: Box::new(levels.quick_operator(hierarchy, &response, &start)),
     };
     let MeshStart { elements, pressure } = start;
     let heights = element_heights(&levels.data.heights, &elements, None, levels.problem.out_of_reach(grid.len()));
-    let mut descent = Descent::new(&heights, grid, operators, &levels.problem, Start::Pressure(pressure));
+    let descent = Descent::new(&heights, grid, operators, &levels.problem, Start::Pressure(pressure));
+    let mut descent = TileDescent::new(descent, storage);
     let outcome = descent.run(goal, &DescentObserver { observer, mesh: &elements });
     let info = descent.info();
-    let (pressure, gap) = descent.into_vectors(0.0);
+    let (pressure, gap) = descent.into_descent().into_vectors(0.0);
     SolvedLevel { evaluated: elements.len(), covered: elements.n_finest(), elements, pressure, gap, outcome, info }
 }

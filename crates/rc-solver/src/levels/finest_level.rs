@@ -5,6 +5,7 @@
 //! until bounds exclude contact everywhere else.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 use rc_core::{Grid, Observer};
@@ -21,6 +22,7 @@ use crate::descent::state::{Descent, Start};
 use crate::descent::sums::GapSums;
 use crate::levels::coarse_level::{SolvedLevel, add_work};
 use crate::levels::operator_error::{OperatorError, PressureScale};
+use crate::levels::tile_descent::{StorageTables, TileDescent};
 use crate::levels::tiles::TileLevels;
 use crate::tiles::element_heights::element_heights;
 use crate::tiles::exclusion::SmoothDisplacement;
@@ -112,6 +114,7 @@ struct Evaluation {
 struct OperatorTables {
     quick: Tables<f32>,
     preconditioner: Tables<f32>,
+    storage: Option<StorageTables>,
     gaps: TablesForGaps,
 }
 
@@ -154,9 +157,12 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     fn new(levels: &'s TileLevels<'a>, grid: Grid, mut start: MeshStart, contact_gap: f64) -> Self {
         let (n_cell, layout) = (grid.len() as f64, start.elements.layout());
         project_to_load(&levels.problem, n_cell, &layout, &mut start.pressure, None);
+        let kernels = &levels.data.kernels;
+        let preconditioner = kernels.preconditioner().tables(grid);
         let tables = OperatorTables {
-            quick: levels.data.kernels.quick().tables(grid),
-            preconditioner: levels.data.kernels.preconditioner().tables(grid),
+            quick: kernels.quick().tables(grid),
+            storage: kernels.quick_storage().map(|quick| StorageTables::new(quick.tables(grid), &preconditioner)),
+            preconditioner,
             gaps: TablesForGaps {
                 descents: levels.fresh().tables(grid),
                 certificates: levels.better().map(|better| better.tables(grid)),
@@ -177,13 +183,15 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         let hierarchy = levels.hierarchy(&near.elements, levels.data.kernels.quick().reach());
         let (prepared, fresh) = tables.gaps.choose(levels, certify);
         let fresh_hierarchy = levels.hierarchy(&near.elements, prepared.reach());
+        let storage = tables.storage.as_mut().map(|storage| storage.corrections(Arc::clone(&hierarchy)));
         let operators = LevelOperators {
             corrections: Box::new(TileCorrections::new(hierarchy, &tables.quick, &mut tables.preconditioner)),
             fresh: levels.operator(fresh_hierarchy, fresh, &current),
         };
         drop(current);
         let start = Start::Known { pressure: near.pressure, gap: near.gap };
-        let mut descent = Descent::new(&near.heights, info.grid, operators, &levels.problem, start);
+        let descent = Descent::new(&near.heights, info.grid, operators, &levels.problem, start);
+        let mut descent = TileDescent::new(descent, storage);
         let max_iterations = levels.params.solve.max_iterations;
         let goal = |factor: f64| Goal { tolerance: factor * tolerance, max_iterations, certify: None };
         let observer = DescentObserver { observer, mesh: &near.elements };
@@ -200,7 +208,7 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         };
         let reached = last.converged && !observer.observer.should_stop();
         add_work(&mut info, &descent.info());
-        let pressure = descent.into_pressure();
+        let pressure = descent.into_descent().into_pressure();
         candidates.heights = candidate_heights(levels, &candidates.elements, Some((&near.elements, &near.heights)));
         let current = MeshStart { elements: near.elements, pressure };
         (Self { levels, tables, candidates, current, info }, reached)

@@ -13,5 +13,6 @@ pub(crate) mod nested;
 pub(crate) mod operator_error;
 pub(crate) mod params;
 pub(crate) mod split;
+mod tile_descent;
 pub(crate) mod tiles;
 pub(crate) mod uniform;

@@ -75,7 +75,16 @@ pub(crate) fn prepare<'a>(
     let solid = Solid::new(kernel, split, Base::new(ladder, boundary))?;
     check_split(kernel, split, grid)?;
     let sampled_bytes = Heights::sampled_bytes(&source, ladder);
-    let kernels = Kernels::new(solid, params.border_level);
+    let mut kernels = Kernels::new(solid, params.border_level);
+    if kernel.sliding_velocity().is_some() {
+        // Stencils with tails are those of elements of one size, on levels that halve.
+        let has_form = boundary == Boundary::Periodic && ladder.is_even() && params.border_level == 0;
+        match (kernel.sliding_modes().filter(|_| has_form), refusal(&[Feature::Sliding], Some(Method::Adaptive))) {
+            (Some(modes), _) => kernels = kernels.under_sliding(modes),
+            (None, Some(refusal)) => return Err(refusal.into()),
+            (None, None) => unreachable!("the table refuses what has no adaptive form"),
+        }
+    }
     check_memory(grid, params.memory_limit, base_bytes(kernels.base().period()) + sampled_bytes, None)?;
     let heights = Heights::with_borders(source, base, boundary)?;
     Ok(TileData { heights, kernels, sampled_bytes })

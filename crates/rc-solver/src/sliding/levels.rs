@@ -41,10 +41,8 @@ pub(crate) fn solve_sliding(
         Some(solution) => (solution, Work::default()),
         None => {
             let levels = SlidingLevels { grids: GridLevels::new(kernel, &problem, (heights, &coarser), 0), kernel };
-            let n_levels = levels.grids.n_levels();
-            let nested = Nested { problem: &problem, params: *params, n_levels, observer };
-            let begun = Begun { above: n_levels - 1, start: Start::Nothing, history: History::default() };
-            let ((sliding, outcome), history) = nested.solve(&levels, nested.climb(&levels, begun, 0));
+            let nested = Nested { problem: &problem, params: *params, n_levels: levels.grids.n_levels(), observer };
+            let ((sliding, outcome), history) = levels.solve_all(&nested, 0);
             let work = sliding.work;
             (sliding.descent.into_solution(&outcome, history.levels, history.coarser), work)
         }
@@ -54,12 +52,18 @@ pub(crate) fn solve_sliding(
 }
 
 /// Nested grids, each of which is solved by [`SlidingDescent`].
-struct SlidingLevels<'a> {
-    grids: GridLevels<'a>,
-    kernel: &'a dyn Kernel,
+pub(crate) struct SlidingLevels<'a> {
+    pub(crate) grids: GridLevels<'a>,
+    pub(crate) kernel: &'a dyn Kernel,
 }
 
 impl<'a> SlidingLevels<'a> {
+    /// Solves all grids, coarsest first. The last one has `above` levels above it.
+    pub(crate) fn solve_all(&self, nested: &Nested<'_>, above: usize) -> ((SlidingDescent<'a>, Outcome), History) {
+        let begun = Begun { above: self.grids.n_levels() - 1, start: Start::Nothing, history: History::default() };
+        nested.solve(self, nested.climb(self, begun, above))
+    }
+
     /// The pressure on the coarsest grid of an elastic solid with the storage modulus of each wave.
     fn elastic_start(&self, above: usize, storage: GridResponse, goal: Goal, observer: &dyn Observer) -> Start {
         let grid = self.grids.grid(above);

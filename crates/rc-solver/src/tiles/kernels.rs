@@ -4,6 +4,7 @@
 
 use std::sync::OnceLock;
 
+use rc_core::SlidingModes;
 use rc_kernel::{ScaleSplit, SplitParams};
 
 use crate::parallel::made;
@@ -18,8 +19,11 @@ use crate::tiles::split::{GapSplit, N_SPLITS};
 /// They are for one solid on one base grid, and one number of border levels.
 pub(crate) struct Kernels {
     solid: Solid,
+    /// The solid with the storage modulus of each wave, under a sliding surface.
+    storage: Option<Solid>,
     border_level: usize,
     quick: OnceLock<Prepared<f32>>,
+    quick_storage: OnceLock<Prepared<f32>>,
     preconditioner: OnceLock<Prepared<f32>>,
     gaps: [OnceLock<PreparedGap>; N_SPLITS],
 }
@@ -27,13 +31,21 @@ pub(crate) struct Kernels {
 impl Kernels {
     /// Kernels that are not made yet.
     pub(crate) fn new(solid: Solid, border_level: usize) -> Self {
-        let (quick, preconditioner, gaps) = Default::default();
-        Self { solid, border_level, quick, preconditioner, gaps }
+        let (quick, quick_storage, preconditioner, gaps) = Default::default();
+        Self { solid, storage: None, border_level, quick, quick_storage, preconditioner, gaps }
+    }
+
+    /// Kernels of the same solid, of a material that relaxes while a surface slides over it.
+    pub(crate) fn under_sliding(self, modes: SlidingModes) -> Self {
+        let SlidingModes { compliance, storage } = modes;
+        let storage = self.solid.clone().under_sliding(storage);
+        let sliding = Self::new(self.solid.under_sliding(compliance), self.border_level);
+        Self { storage: Some(storage), ..sliding }
     }
 
     /// Kernels of the same solid that are not made yet.
     pub(crate) fn empty(&self) -> Self {
-        Self::new(self.solid.clone(), self.border_level)
+        Self { storage: self.storage.clone(), ..Self::new(self.solid.clone(), self.border_level) }
     }
 
     /// The base grid.
@@ -48,9 +60,20 @@ impl Kernels {
         })
     }
 
-    /// The approximate inverse of L.
+    /// As [`Kernels::quick`], of the solid with the storage modulus of each wave. `None` at rest.
+    pub(crate) fn quick_storage(&self) -> Option<&Prepared<f32>> {
+        let storage = self.storage.as_ref()?;
+        Some(made(&self.quick_storage, || {
+            Prepared::displacement(&ScaleSplit::new(SplitParams::quick()), storage.clone(), self.border_level)
+        }))
+    }
+
+    /// The approximate inverse of L. Under a sliding surface, it is that of the solid with the storage modulus.
     pub(crate) fn preconditioner(&self) -> &Prepared<f32> {
-        made(&self.preconditioner, || Prepared::inverse(&ScaleSplit::new(SplitParams::quick()), self.base()))
+        made(&self.preconditioner, || {
+            let solid = self.storage.clone().unwrap_or_else(|| self.base().into());
+            Prepared::inverse(&ScaleSplit::new(SplitParams::quick()), solid)
+        })
     }
 
     /// L for fresh gaps.

@@ -3,8 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use rc_core::{Grid, Kernel, SplitByScale};
-use rc_kernel::SlidingCompliance;
+use rc_core::{Grid, Kernel, SlidingCompliance, SplitByScale};
 
 use crate::problem::adaptive_error::AdaptiveError;
 use crate::tiles::base::Base;
@@ -64,9 +63,13 @@ impl Solid {
     /// The solid, of a material that relaxes while a surface slides over it along x. Lengths are in λ.
     ///
     /// The cell is periodic, and each level has twice the elements of the one below along a side.
-    #[cfg_attr(not(test), expect(dead_code, reason = "solves on tiles are of a solid at rest"))]
     pub(crate) fn under_sliding(self, compliance: SlidingCompliance) -> Self {
         Self { sliding: Some(Arc::new(compliance)), ..self }
+    }
+
+    /// The half-space of the same material.
+    pub(crate) fn half_space(self) -> Self {
+        Self { deviation: None, ..self }
     }
 
     /// What a sliding surface makes of the solid, with lengths in λ. `None` at rest.

@@ -1,5 +1,6 @@
 //! The bounds on the operator's error against Fourier transforms and exact sums.
 
+mod sliding;
 mod smooth;
 
 use std::f64::consts::TAU;
@@ -27,6 +28,7 @@ use crate::tiles::base::Base;
 use crate::tiles::gap_operator::{GapOperator, PreparedGap};
 use crate::tiles::ladder::sides_of;
 use crate::tiles::operator::hierarchy::Hierarchy;
+use crate::tiles::solid::Solid;
 
 /// Places of the elements of a mesh of one size on its whole grid.
 ///
@@ -172,6 +174,10 @@ struct Audited {
 
 impl Scene<'_> {
     fn audited(&self) -> Audited {
+        self.audited_with(if self.boundary == Boundary::Free { &FreeLove } else { &Love })
+    }
+
+    fn audited_with(&self, kernel: &dyn Kernel) -> Audited {
         let params = AdaptiveParams {
             solve: IterationParams { bound: self.bound, max_iterations: 500 },
             operator_error: 1e-6,
@@ -179,7 +185,6 @@ impl Scene<'_> {
             base_side: self.base,
             memory_limit: None,
         };
-        let kernel: &dyn Kernel = if self.boundary == Boundary::Free { &FreeLove } else { &Love };
         let data = prepare(HeightSource::Map(self.map), kernel, &HalfSpace, &params).expect("heights");
         let problem = ContactProblem::new(self.map, self.control).with_kernel(kernel);
         let levels = TileLevels::new(&Arc::new(data), &problem, &params);
@@ -205,9 +210,10 @@ impl Audited {
     }
 
     /// Gives `look` the certifying operator, after an application to the pressure, and its displacement.
-    fn certified<R>(&self, base: Base, look: impl FnOnce(&dyn GapOperator, &[f64]) -> R) -> R {
-        let level = &self.solved.level;
-        let prepared = PreparedGap::new(self.solved.certified, base, 0);
+    fn certified<R>(&self, solid: impl Into<Solid>, look: impl FnOnce(&dyn GapOperator, &[f64]) -> R) -> R {
+        let (level, solid) = (&self.solved.level, solid.into());
+        let base = solid.base();
+        let prepared = PreparedGap::new(self.solved.certified, solid, 0);
         let hierarchy = Arc::new(Hierarchy::new(base, level.elements.clone(), prepared.reach()));
         let tables = prepared.tables(self.solved.grid);
         let mut operator = tables.operator(hierarchy, level.outcome.mean_pressure, self.problem.h_range);
@@ -338,13 +344,17 @@ fn an_audit_of_patches_finds_no_more_than_is_claimed() {
 
 /// Asserts that the claims hold.
 fn audit(name: &str, scene: &Scene<'_>, audited: &Audited) {
+    audit_of(audited.base.into(), name, scene, audited);
+}
+
+fn audit_of(solid: Solid, name: &str, scene: &Scene<'_>, audited: &Audited) {
     let claimed = audited.solved.level.outcome.certificate;
     let found = audited.certificate(scene.map);
     assert!(claimed.meets(scene.bound), "{name}: not converged: {claimed}");
     assert!(found.penetration <= claimed.penetration, "{name}: {found}, claimed {claimed}");
     assert!(found.energy <= claimed.energy, "{name}: {found}, claimed {claimed}");
     let bound = audited.error().displacement;
-    let worst = audited.certified(audited.base, |_, displacement| {
+    let worst = audited.certified(solid, |_, displacement| {
         let both = displacement.iter().zip(places(&audited.solved.level.elements));
         let errors = both.filter_map(|(v, place)| Some((v - audited.displacement[place?]).abs()));
         errors.fold(0.0, f64::max)

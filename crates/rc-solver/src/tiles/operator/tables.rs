@@ -104,17 +104,21 @@ impl<T: Real> Prepared<T> {
     }
 
     /// Prepares about |q|/2 as a preconditioner: the inverse of L except for the mean.
-    pub(crate) fn inverse(split: &ScaleSplit, base: impl Into<Base>) -> Self {
-        let base = base.into();
+    ///
+    /// Under a sliding surface, it is that of the `solid` with the storage modulus of each wave.
+    pub(crate) fn inverse(split: &ScaleSplit, solid: impl Into<Solid>) -> Self {
+        let solid = solid.into().half_space();
+        let base = solid.base();
         let sizes = T::sizes(split.params());
         let part = (split.inverse_stencil(INVERSE_RADIUS), Transfer::new(&split.level_filter(), sizes.taps));
         let (periodic, [along_x, _]) = (base.periodic_grid(), base.periods_per_side());
         let symbol = SymbolTable::new(periodic, |kx: usize, ky: usize| {
-            PI * (kx as f64).hypot(ky as f64 / periodic.cell_ratio()) / along_x
+            let storage = solid.sliding().map_or(1.0, |storage| storage.at(2.0 * PI * kx as f64).re);
+            PI * (kx as f64).hypot(ky as f64 / periodic.cell_ratio()) / along_x / storage
         });
         Self {
             sizes,
-            solid: base.into(),
+            solid,
             symbol: Factors::AtRest(symbol),
             finest: part.clone(),
             between: part,
@@ -178,9 +182,12 @@ impl<T: Real> Prepared<T> {
 
     /// The stencil of a level under a sliding surface. `None` at rest.
     fn relaxed(&self, level: usize, n_levels: usize) -> Option<RelaxedStencil> {
-        let compliance = self.solid.sliding().filter(|_| matches!(self.scale, Scale::Side))?;
         let spacing = ladder::doubled(self.base().grid(), level).spacing();
-        let compliance = compliance.in_units_of(spacing.x);
+        let compliance = self.solid.sliding()?.in_units_of(spacing.x);
+        if matches!(self.scale, Scale::Inverse) {
+            let near = self.split.inverse_stencil_of(INVERSE_RADIUS, &compliance);
+            return Some(RelaxedStencil { near, tails: Vec::new() });
+        }
         if level == n_levels {
             return Some(self.split.relaxed_love(&compliance));
         }

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rc_core::{DVec2, Grid, Operator};
-use rc_kernel::{Love, Relaxation, ScaleSplit, SlidingCompliance, SplitParams, Viscoelastic};
+use rc_core::{DVec2, Grid, Operator, SlidingCompliance};
+use rc_kernel::{Love, Relaxation, ScaleSplit, SplitParams, Viscoelastic};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet};
 
 use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
