@@ -48,7 +48,7 @@ impl std::fmt::Debug for Sliding {
 /// What a sliding surface makes of the compliance of a wave along x: J0 + Σ J/(1 - i q ℓ).
 ///
 /// Lengths are in any unit. With ℓ > 0 the displacement at x follows the pressure at larger x. With ℓ < 0 it follows
-/// that at smaller x. J0 and all J are not negative.
+/// that at smaller x. J0 and all J of a solid are not negative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlidingCompliance {
     /// J0, the part that follows at once.
@@ -73,6 +73,20 @@ impl SlidingCompliance {
     }
 }
 
+impl SlidingCompliance {
+    /// The factor of -⟨p ∂u⟩, the force against a velocity along x, without modes of lengths below `shortest`.
+    ///
+    /// ∂u of a mode is (F - 1) L p/ℓ, with F p the exponential average of p, and ⟨p ∂L p⟩ = 0. So the force is ⟨p G L p⟩
+    /// with G = Σ J/|ℓ| (1 - 1/(1 - i q ℓ)). Only the symmetric part of G matters, which is the same for both
+    /// directions of the velocity.
+    #[must_use]
+    pub fn dissipation(&self, shortest: f64) -> Self {
+        let long = self.modes.iter().filter(|[_, length]| length.abs() >= shortest);
+        let modes: Vec<[f64; 2]> = long.map(|&[part, length]| [-part / length.abs(), length]).collect();
+        Self { instantaneous: -modes.iter().map(|[part, _]| part).sum::<f64>(), modes }
+    }
+}
+
 /// A solid of finitely many retardation times under a surface that slides along x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SlidingModes {
@@ -80,4 +94,20 @@ pub struct SlidingModes {
     pub compliance: SlidingCompliance,
     /// The inverse 1/Re E~ of the storage modulus: a real factor, as lengths come in pairs ℓ and -ℓ of the same part.
     pub storage: SlidingCompliance,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dissipation_is_the_lag_times_the_wavenumber() {
+        let compliance = SlidingCompliance { instantaneous: 0.2, modes: vec![[0.5, 0.1], [0.3, 3.0]] };
+        let dissipation = compliance.dissipation(1e-3);
+        for q in [0.0, 0.3, -7.0, 200.0] {
+            let expected = q * compliance.at(q).im;
+            assert!((dissipation.at(q).re - expected).abs() < 1e-12 * (1.0 + expected), "{q}");
+        }
+        assert_eq!(compliance.dissipation(1.0).modes, [[-0.1, 3.0]]);
+    }
 }

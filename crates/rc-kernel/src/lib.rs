@@ -76,8 +76,7 @@ pub use relaxation::{MaterialError, Relaxation};
 pub use shells::MAX_SHELLS;
 pub use spectral::Spectral;
 pub use split::{
-    CoarseElement, CoarseFilter, Filter, RelaxedStencil, ScaleSplit, SplitParams, Stencil, Tail,
-    UnevenFilter,
+    CoarseElement, CoarseFilter, Filter, RelaxedStencil, ScaleSplit, SplitParams, Stencil, Tail, UnevenFilter,
 };
 pub use truncated::{LoadForm, shells_for, truncated_coefficient, truncation_error_bound};
 pub use viscoelastic::Viscoelastic;

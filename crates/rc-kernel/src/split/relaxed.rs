@@ -210,7 +210,7 @@ impl Moments {
     }
 
     fn of(&mut self, width: f64) -> [f64; TERMS] {
-        if let Some((_, moments)) = self.known.iter().find(|(other, _)| *other == width) {
+        if let Some((_, moments)) = self.known.iter().find(|(other, _)| other.to_bits() == width.to_bits()) {
             return *moments;
         }
         let mut moments = [0.0; TERMS];

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use rc_core::{Boundary, Grid, Observer};
 use rc_quadtree::{TILE, TileSet};
 
-use crate::descent::info::{LevelInfo, LevelValues};
+use crate::descent::info::{Friction, LevelInfo, LevelValues, SolveInfo};
 use crate::descent::run::Goal;
 use crate::grid::prolongation::edge_function;
 use crate::levels::agreed_stop::AgreedStop;
@@ -22,9 +22,13 @@ use crate::levels::grids::{GridLevels, coarser_heights};
 use crate::levels::nested::{Begun, History, Levels, Nested};
 use crate::levels::operator_error::{PressureScale, can_certify, certifying_split};
 use crate::levels::tiles::TileLevels;
+use crate::sliding::friction::finished;
 use crate::sliding::levels::SlidingLevels;
+use crate::sliding::newton::Work;
 use crate::tiles::contact_area::Values;
+use crate::tiles::friction::SlidingContact;
 use crate::tiles::ladder::sides_of;
+use crate::tiles::mesh::Mesh;
 use crate::tiles::patch::displacement_of_patch;
 use crate::tiles::prolongation::{self, MeshStart, refine_all, refine_base, refine_some};
 use crate::tiles::solution::{TileSolution, rms_pressure};
@@ -166,7 +170,7 @@ impl<'a> TileLevels<'a> {
     /// Solves the finest level again, from a solution with another operator.
     fn improve(&self, solved: Finest, observer: &dyn Observer) -> Finest {
         let Finest { grid, level, tile_fraction, mut history, .. } = solved;
-        let SolvedLevel { elements, pressure, outcome, info: before, .. } = level;
+        let SolvedLevel { elements, pressure, outcome, info: before, work, .. } = level;
         history.levels.pop();
         let mesh = MeshStart { elements, pressure };
         let (contact_gap, energy_length) = (outcome.contact_gap, outcome.energy_length());
@@ -175,13 +179,14 @@ impl<'a> TileLevels<'a> {
         if let Some(finest) = solved.history.levels.last_mut() {
             add_work(finest, &before);
         }
+        solved.level.work = solved.level.work.plus(work);
         solved
     }
 
     /// Makes the solution from the solved levels.
     fn solution(&self, solved: Finest) -> TileSolution<'a> {
         let Finest { grid, level, history, .. } = solved;
-        let SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, .. } = level;
+        let SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, work, .. } = level;
         let (contact_gap, hardness) = (outcome.contact_gap, self.problem.bounds.hardness);
         let bias = self.kernel.get().edge_bias(grid);
         let values = Values { mesh: &elements, pressure: &pressure, gap: &gap, contact_gap, hardness, bias };
@@ -190,6 +195,7 @@ impl<'a> TileLevels<'a> {
         if self.boundary() == Boundary::Free {
             info.mean_displacement += displacement_of_patch(&elements, &pressure, grid);
         }
+        info.friction = self.friction(grid, (&elements, &pressure), &info, work);
         TileSolution {
             data: Arc::clone(&self.data),
             h_max: self.problem.h_max,
@@ -205,6 +211,19 @@ impl<'a> TileLevels<'a> {
             evaluated,
             proven: grid.len() - covered,
         }
+    }
+
+    /// Friction of a pressure on elements of `grid`. `None` if nothing slides.
+    fn friction(
+        &self,
+        grid: Grid,
+        (mesh, pressure): (&Mesh, &[f64]),
+        info: &SolveInfo,
+        work: Work,
+    ) -> Option<Friction> {
+        let kernel = self.kernel.get();
+        let contact = SlidingContact { data: &self.data, kernel, grid, mesh, pressure };
+        Some(finished((info, false), &contact.sums()?, kernel.sliding_velocity()?, work))
     }
 
     fn nested<'n>(&'n self, n_levels: usize, observer: &'n dyn Observer) -> Nested<'n> {

@@ -12,6 +12,7 @@ use crate::descent::run::{DescentObserver, Goal};
 use crate::descent::state::{Descent, Start};
 use crate::levels::tile_descent::{StorageTables, TileDescent};
 use crate::levels::tiles::TileLevels;
+use crate::sliding::newton::Work;
 use crate::tiles::element_heights::element_heights;
 use crate::tiles::mesh::Mesh;
 use crate::tiles::operator::corrections::TileCorrections;
@@ -30,6 +31,8 @@ pub(crate) struct SolvedLevel {
     /// On the finest level, all others are proven to be out of contact.
     pub(crate) covered: usize,
     pub(crate) info: LevelInfo,
+    /// The work of Newton's method under a sliding surface.
+    pub(crate) work: Work,
 }
 
 impl SolvedLevel {
@@ -75,7 +78,8 @@ pub(crate) fn solve_coarse_level(
     let descent = Descent::new(&heights, grid, operators, &levels.problem, Start::Pressure(pressure));
     let mut descent = TileDescent::new(descent, storage);
     let outcome = descent.run(goal, &DescentObserver { observer, mesh: &elements });
-    let info = descent.info();
+    let (info, work) = (descent.info(), descent.work());
     let (pressure, gap) = descent.into_descent().into_vectors(0.0);
-    SolvedLevel { evaluated: elements.len(), covered: elements.n_finest(), elements, pressure, gap, outcome, info }
+    let (evaluated, covered) = (elements.len(), elements.n_finest());
+    SolvedLevel { evaluated, covered, elements, pressure, gap, outcome, info, work }
 }

@@ -24,6 +24,7 @@ use crate::levels::coarse_level::{SolvedLevel, add_work};
 use crate::levels::operator_error::{OperatorError, PressureScale};
 use crate::levels::tile_descent::{StorageTables, TileDescent};
 use crate::levels::tiles::TileLevels;
+use crate::sliding::newton::Work;
 use crate::tiles::element_heights::element_heights;
 use crate::tiles::exclusion::SmoothDisplacement;
 use crate::tiles::gap_operator::{GapOperator, GapTables, PreparedGap};
@@ -151,6 +152,7 @@ struct FinestLevel<'s, 'a> {
     /// The pressure of the last descent, or the start before the first descent.
     current: MeshStart,
     info: LevelInfo,
+    work: Work,
 }
 
 impl<'s, 'a> FinestLevel<'s, 'a> {
@@ -170,14 +172,14 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         };
         let candidates = first_candidates(levels, &start, &tables.quick, contact_gap);
         let info = LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 };
-        Self { levels, tables, candidates, current: start, info }
+        Self { levels, tables, candidates, current: start, info, work: Work::default() }
     }
 
     /// Improves the pressure on the elements near contact. Returns whether it reached the tolerance there.
     ///
     /// Fresh gaps come from the operator for certificates if `certify`. The first round uses the operator for descents.
     fn improve(self, evaluation: Evaluation, certify: bool, observer: &dyn Observer) -> (Self, bool) {
-        let Self { levels, mut tables, mut candidates, current, mut info } = self;
+        let Self { levels, mut tables, mut candidates, current, mut info, mut work } = self;
         let tolerance = evaluation.error.goal(levels.params.solve.bound, &levels.problem);
         let near = NearContact::choose(&mut candidates, &current.elements, evaluation, levels);
         let hierarchy = levels.hierarchy(&near.elements, levels.data.kernels.quick().reach());
@@ -208,17 +210,18 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         };
         let reached = last.converged && !observer.observer.should_stop();
         add_work(&mut info, &descent.info());
+        work = work.plus(descent.work());
         let pressure = descent.into_descent().into_pressure();
         candidates.heights = candidate_heights(levels, &candidates.elements, Some((&near.elements, &near.heights)));
         let current = MeshStart { elements: near.elements, pressure };
-        (Self { levels, tables, candidates, current, info }, reached)
+        (Self { levels, tables, candidates, current, info, work }, reached)
     }
 
     /// The gap on all candidates, and the operator that computed it.
     ///
     /// The operator is the one for certificates if `certify`, otherwise the one for descents.
     fn evaluate(&self, certify: bool) -> (Evaluation, Box<dyn GapOperator + '_>) {
-        let Self { levels, tables, candidates: Candidates { elements, heights }, current, info } = self;
+        let Self { levels, tables, candidates: Candidates { elements, heights }, current, info, .. } = self;
         let (prepared, tables) = tables.gaps.choose(levels, certify);
         let mut pressure = current.elements.moved(elements, &current.pressure, 0.0);
         let mut gap = vec![0.0; pressure.len()];
@@ -293,10 +296,10 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     }
 
     fn into_solved(self, evaluation: Evaluation) -> (SolvedLevel, PressureScale) {
-        let Self { candidates: Candidates { elements, .. }, info, .. } = self;
+        let Self { candidates: Candidates { elements, .. }, info, work, .. } = self;
         let Evaluation { pressure, gap, outcome, scale, .. } = evaluation;
         let (evaluated, covered) = (elements.n_cells(), elements.n_finest());
-        (SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, info }, scale)
+        (SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, info, work }, scale)
     }
 }
 

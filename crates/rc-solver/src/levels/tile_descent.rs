@@ -7,7 +7,7 @@ use crate::descent::operators::PreconditionedOperator;
 use crate::descent::outcome::Outcome;
 use crate::descent::run::{DescentObserver, Goal};
 use crate::descent::state::Descent;
-use crate::sliding::newton::SlidingDescent;
+use crate::sliding::newton::{SlidingDescent, Work};
 use crate::tiles::operator::corrections::TileCorrections;
 use crate::tiles::operator::hierarchy::Hierarchy;
 use crate::tiles::operator::tables::Tables;
@@ -65,6 +65,14 @@ impl<'a> TileDescent<'a> {
         match self {
             Self::AtRest(descent) => descent.info(),
             Self::Sliding(sliding) => sliding.descent.info(),
+        }
+    }
+
+    /// The work of Newton's method.
+    pub(super) fn work(&self) -> Work {
+        match self {
+            Self::AtRest(_) => Work::default(),
+            Self::Sliding(sliding) => sliding.work,
         }
     }
 

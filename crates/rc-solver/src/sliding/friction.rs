@@ -4,20 +4,20 @@ use rayon::prelude::*;
 use rc_core::{DVec2, Field, Kernel};
 use rc_fft::half_plane_values;
 
-use crate::descent::info::{Friction, GridSolution, Status};
+use crate::descent::info::{Friction, GridSolution, SolveInfo, Status};
 use crate::sliding::newton::Work;
 
 /// Sums over waves, per nominal area and in E*.
 #[derive(Clone, Copy, Default)]
-struct Sums {
+pub(crate) struct Sums {
     /// -⟨p ∂h⟩ along the velocity and across.
-    of_heights: [f64; 2],
+    pub(crate) of_heights: [f64; 2],
     /// -⟨p ∂u⟩ along the velocity.
-    of_displacement: f64,
+    pub(crate) of_displacement: f64,
     /// ⟨∂h S⁻¹ ∂h⟩ along the velocity, with the symmetric part S of L.
-    slope: f64,
+    pub(crate) slope: f64,
     /// Maximum of |Im L|/Re L.
-    loss_tangent: f64,
+    pub(crate) loss_tangent: f64,
 }
 
 impl Sums {
@@ -70,11 +70,12 @@ pub(crate) fn friction(solution: &GridSolution, heights: &Field, kernel: &dyn Ke
         .map(|kx| (kx * ny as usize..(kx + 1) * ny as usize).map(of_wave).fold(Sums::default(), Sums::plus))
         .collect();
     let sums = columns.into_iter().fold(Sums::default(), Sums::plus);
-    Some(finished(solution, &sums, velocity, work))
+    let is_exact = solution.status == Status::FullContact && solution.info.certificate.energy < 1e-9;
+    Some(finished((&solution.info, is_exact), &sums, velocity, work))
 }
 
-fn finished(solution: &GridSolution, sums: &Sums, velocity: DVec2, work: Work) -> Friction {
-    let info = &solution.info;
+/// Friction from sums over a solution, which may be exact.
+pub(crate) fn finished((info, is_exact): (&SolveInfo, bool), sums: &Sums, velocity: DVec2, work: Work) -> Friction {
     let load = info.mean_pressure;
     let coefficient = sums.of_heights[0] / load;
     let of_displacement = sums.of_displacement / load;
@@ -82,7 +83,6 @@ fn finished(solution: &GridSolution, sums: &Sums, velocity: DVec2, work: Work) -
     let distance = info.certificate.energy * info.elastic_energy.max(0.0).sqrt();
     let bound = distance * sums.slope.sqrt() / load;
     let iteration = info.iteration_error.powi(2) * coefficient.abs();
-    let is_exact = solution.status == Status::FullContact && info.certificate.energy < 1e-9;
     let error = if is_exact { 0.0 } else { (coefficient - of_displacement).abs().max(iteration) };
     Friction {
         coefficient,

@@ -49,6 +49,16 @@ pub(crate) struct Work {
     pub(crate) storage_rounds: usize,
 }
 
+impl Work {
+    /// This work and more.
+    pub(crate) fn plus(self, more: Self) -> Self {
+        Self {
+            gmres_iterations: self.gmres_iterations + more.gmres_iterations,
+            storage_rounds: self.storage_rounds + more.storage_rounds,
+        }
+    }
+}
+
 /// A descent whose operator is not symmetric.
 pub(crate) struct SlidingDescent<'a> {
     pub(crate) descent: Descent<'a>,

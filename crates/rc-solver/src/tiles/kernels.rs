@@ -14,6 +14,11 @@ use crate::tiles::operator::tables::Prepared;
 use crate::tiles::solid::Solid;
 use crate::tiles::split::{GapSplit, N_SPLITS};
 
+/// Error of the split for the force against a sliding surface.
+///
+/// Short lengths magnify it, as the force has a difference of displacements over them.
+const DISSIPATION_ERROR: f64 = 2e-9;
+
 /// L and its approximate inverse by all splits.
 ///
 /// They are for one solid on one base grid, and one number of border levels.
@@ -24,6 +29,7 @@ pub(crate) struct Kernels {
     border_level: usize,
     quick: OnceLock<Prepared<f32>>,
     quick_storage: OnceLock<Prepared<f32>>,
+    dissipation: OnceLock<Prepared<f64>>,
     preconditioner: OnceLock<Prepared<f32>>,
     gaps: [OnceLock<PreparedGap>; N_SPLITS],
 }
@@ -31,8 +37,8 @@ pub(crate) struct Kernels {
 impl Kernels {
     /// Kernels that are not made yet.
     pub(crate) fn new(solid: Solid, border_level: usize) -> Self {
-        let (quick, quick_storage, preconditioner, gaps) = Default::default();
-        Self { solid, storage: None, border_level, quick, quick_storage, preconditioner, gaps }
+        let (quick, quick_storage, dissipation, preconditioner, gaps) = Default::default();
+        Self { solid, storage: None, border_level, quick, quick_storage, dissipation, preconditioner, gaps }
     }
 
     /// Kernels of the same solid, of a material that relaxes while a surface slides over it.
@@ -53,6 +59,11 @@ impl Kernels {
         self.solid.base()
     }
 
+    /// Whether a surface slides over the solid.
+    pub(crate) fn is_sliding(&self) -> bool {
+        self.solid.sliding().is_some()
+    }
+
     /// L for corrections, a few percent off on rough pressures.
     pub(crate) fn quick(&self) -> &Prepared<f32> {
         made(&self.quick, || {
@@ -65,6 +76,18 @@ impl Kernels {
         let storage = self.storage.as_ref()?;
         Some(made(&self.quick_storage, || {
             Prepared::displacement(&ScaleSplit::new(SplitParams::quick()), storage.clone(), self.border_level)
+        }))
+    }
+
+    /// The operator of the force against a sliding surface, without lengths below `shortest`, in λ. `None` at rest.
+    ///
+    /// It is made once, so `shortest` is always the same.
+    pub(crate) fn dissipation(&self, shortest: f64) -> Option<&Prepared<f64>> {
+        let compliance = self.solid.sliding()?;
+        Some(made(&self.dissipation, || {
+            let split = SplitParams::for_error(DISSIPATION_ERROR).expect("a split for this error");
+            let solid = self.solid.clone().under_sliding(compliance.dissipation(shortest));
+            Prepared::displacement(&ScaleSplit::new(split), solid, self.border_level)
         }))
     }
 

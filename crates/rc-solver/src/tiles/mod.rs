@@ -8,6 +8,7 @@ pub(crate) mod deal;
 pub(crate) mod element_blocks;
 pub(crate) mod element_heights;
 pub(crate) mod exclusion;
+pub(crate) mod friction;
 pub(crate) mod gap_operator;
 pub(crate) mod heights;
 pub(crate) mod kernels;

@@ -11,7 +11,7 @@ use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, put_tile};
 use crate::descent::contact_element::ContactElement;
 use crate::descent::info::{SolveInfo, Status};
 use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
-use crate::descent::stiffness::{elastic_part, stiffness_pressure, stiffness_under};
+use crate::descent::stiffness::{elastic_part, stiffness_by_gmres, stiffness_pressure, stiffness_under};
 use crate::solution::contact_area::area::ContactArea;
 use crate::solution::contact_area::plastic::PlasticEdges;
 use crate::solution::gap_part::GapPart;
@@ -124,6 +124,12 @@ impl TileSolution<'_> {
             return f64::INFINITY;
         }
         let n = self.finest.len() as f64;
+        if kernels.is_sliding() {
+            let mut preconditioner = kernels.preconditioner().tables(self.finest);
+            let (hierarchy, tables) = self.operator_of(kernels.response());
+            let mut operator = TileCorrections::new(hierarchy, &tables, &mut preconditioner);
+            return stiffness_by_gmres(pressure, (n, self.converged), &mut operator);
+        }
         // The quick operator alone would be up to a percent off.
         let x = {
             let mut preconditioner = kernels.preconditioner().tables(self.finest);

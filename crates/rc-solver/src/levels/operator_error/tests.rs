@@ -172,12 +172,9 @@ struct Audited {
     displacement: Vec<f64>,
 }
 
-impl Scene<'_> {
-    fn audited(&self) -> Audited {
-        self.audited_with(if self.boundary == Boundary::Free { &FreeLove } else { &Love })
-    }
-
-    fn audited_with(&self, kernel: &dyn Kernel) -> Audited {
+impl<'a> Scene<'a> {
+    /// The levels of its contact with the solid of `kernel`.
+    fn levels(&self, kernel: &'a dyn Kernel) -> TileLevels<'a> {
         let params = AdaptiveParams {
             solve: IterationParams { bound: self.bound, max_iterations: 500 },
             operator_error: 1e-6,
@@ -187,8 +184,15 @@ impl Scene<'_> {
         };
         let data = prepare(HeightSource::Map(self.map), kernel, &HalfSpace, &params).expect("heights");
         let problem = ContactProblem::new(self.map, self.control).with_kernel(kernel);
-        let levels = TileLevels::new(&Arc::new(data), &problem, &params);
-        let levels = levels.expect("a problem");
+        TileLevels::new(&Arc::new(data), &problem, &params).expect("a problem")
+    }
+
+    fn audited(&self) -> Audited {
+        self.audited_with(if self.boundary == Boundary::Free { &FreeLove } else { &Love })
+    }
+
+    fn audited_with(&self, kernel: &'a dyn Kernel) -> Audited {
+        let levels = self.levels(kernel);
         let solved = levels.finish(levels.climb(levels.begin(&Silent), &Silent), &Silent);
         let grid = self.map.grid();
         let mut pressure = vec![0.0; grid.len()];

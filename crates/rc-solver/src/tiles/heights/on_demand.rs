@@ -156,6 +156,11 @@ impl<'a> Heights<'a> {
         &self.grids[0]
     }
 
+    /// Heights on a grid that has all their waves. It is the grid of a map, or one that is not finer than the finest.
+    pub(crate) fn all_waves(&self) -> &Field {
+        self.grids.last().unwrap_or(&self.grids[0])
+    }
+
     /// Writes the heights at the centres of tile (`tx`, `ty`), row-major, in λ.
     ///
     /// `sides` are those of its level, in cells. Cells beyond the level are left as they are. A band-limited surface is

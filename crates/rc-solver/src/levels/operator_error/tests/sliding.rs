@@ -3,9 +3,11 @@
 use rc_core::DVec2;
 use rc_kernel::{Relaxation, Viscoelastic};
 
+use crate::grid::stiffness::contact_stiffness;
 use crate::levels::operator_error::tests::*;
 use crate::problem::bounds::Bounds;
 use crate::sliding::levels::solve_sliding;
+use crate::solution::solved::Solved;
 
 /// One relaxation time with a loss tangent of 1.4, and a series over five decades.
 fn materials() -> [Relaxation; 2] {
@@ -63,4 +65,38 @@ fn sliding_contacts_on_tiles_are_those_of_the_uniform_grid() {
         let claimed = audited.solved.level.outcome.certificate.energy + uniform.info.certificate.energy;
         assert!(distance < claimed, "{name}: {distance:e}, claimed {claimed:e}");
     });
+}
+
+/// Friction and stiffness are those of the uniform grid.
+#[test]
+fn friction_on_tiles_is_that_of_the_uniform_grid() {
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    for (side, waves, load) in [(256, 16, 0.03), (256, 8, 0.03), (512, 8, 0.01)] {
+        let map = rough(Grid::square(side).expect("a grid"), waves, 0.7, &mut rng);
+        let bound = ErrorBound::Energy(1e-3);
+        let control = Control::MeanPressure(1e-3 * load * f64::from(waves));
+        for (material, velocity) in materials().iter().flat_map(|m| [0.003, 0.03, -0.3, 10.0].map(|v| (m, v))) {
+            let kernel = Viscoelastic::new(Love, material, velocity * DVec2::X);
+            let scene = Scene { map: &map, boundary: Boundary::Periodic, base: Some(64), control, bound };
+            let solution = scene.levels(&kernel).solve(false, &Silent).expect("no other method may solve it");
+            let limits = IterationParams { bound, max_iterations: 500 };
+            let uniform = solve_sliding(&map, &kernel, Bounds::from(control), &limits, &Silent).expect("a problem");
+            let stiffness = contact_stiffness(&uniform.pressure, f64::INFINITY, &kernel, true);
+            let (found, expected) =
+                (solution.info.friction.expect("it slides"), uniform.info.friction.expect("it slides"));
+            let name = format!("{side}, {waves} waves, velocity {velocity}");
+            let coefficient = expected.coefficient;
+            let is_near = |found: f64, expected: f64, error: f64| (found - expected).abs() < error * coefficient;
+            assert!(is_near(found.coefficient, coefficient, 1e-5), "{name}: {found:?} for {expected:?}");
+            assert!(is_near(found.lateral, expected.lateral, 1e-5), "{name}: {found:?} for {expected:?}");
+            // Slopes of u are those of the waves of the grid there, and those of the centres of elements here.
+            assert!(is_near(found.of_displacement, coefficient, 0.05), "{name}: {found:?}");
+            assert!((found.max_loss_tangent - expected.max_loss_tangent).abs() < 1e-12, "{name}: {found:?}");
+            // The same slopes over a distance that is a little larger, since it has the error of the operator.
+            let ratio =
+                found.bound / expected.bound * uniform.info.certificate.energy / solution.info.certificate.energy;
+            assert!((ratio - 1.0).abs() < 1e-3, "{name}: {found:?} for {expected:?}");
+            assert!((solution.stiffness() / stiffness - 1.0).abs() < 1e-4, "{name}: {stiffness}");
+        }
+    }
 }
