@@ -81,5 +81,5 @@ pub(crate) fn solve_coarse_level(
     let (info, work) = (descent.info(), descent.work());
     let (pressure, gap) = descent.into_descent().into_vectors(0.0);
     let (evaluated, covered) = (elements.len(), elements.n_finest());
-    SolvedLevel { evaluated, covered, elements, pressure, gap, outcome, info, work }
+    SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, info, work }
 }

@@ -14,7 +14,7 @@ use crate::tiles::operator::tables::Tables;
 
 /// A descent on tiles.
 pub(super) enum TileDescent<'a> {
-    AtRest(Descent<'a>),
+    AtRest(Box<Descent<'a>>),
     Sliding(Box<SlidingDescent<'a>>),
 }
 
@@ -40,7 +40,7 @@ impl<'a> TileDescent<'a> {
     /// The iteration of `descent`. Under a sliding surface there is a solid with the storage modulus of each wave.
     pub(super) fn new(descent: Descent<'a>, storage: Option<Box<dyn PreconditionedOperator + 'a>>) -> Self {
         match storage {
-            None => Self::AtRest(descent),
+            None => Self::AtRest(Box::new(descent)),
             Some(storage) => Self::Sliding(Box::new(SlidingDescent::new(descent, storage))),
         }
     }
@@ -78,7 +78,7 @@ impl<'a> TileDescent<'a> {
 
     pub(super) fn into_descent(self) -> Descent<'a> {
         match self {
-            Self::AtRest(descent) => descent,
+            Self::AtRest(descent) => *descent,
             Self::Sliding(sliding) => sliding.descent,
         }
     }

@@ -37,15 +37,14 @@ pub(crate) fn solve_sliding(
     let full = full_contact::mean_pressure(&problem).and_then(|mean_pressure| {
         full_contact::solve((heights, &coarser), kernel, mean_pressure, &problem, params.bound)
     });
-    let (mut solution, work) = match full {
-        Some(solution) => (solution, Work::default()),
-        None => {
-            let levels = SlidingLevels { grids: GridLevels::new(kernel, &problem, (heights, &coarser), 0), kernel };
-            let nested = Nested { problem: &problem, params: *params, n_levels: levels.grids.n_levels(), observer };
-            let ((sliding, outcome), history) = levels.solve_all(&nested, 0);
-            let work = sliding.work;
-            (sliding.descent.into_solution(&outcome, history.levels, history.coarser), work)
-        }
+    let (mut solution, work) = if let Some(solution) = full {
+        (solution, Work::default())
+    } else {
+        let levels = SlidingLevels { grids: GridLevels::new(kernel, &problem, (heights, &coarser), 0), kernel };
+        let nested = Nested { problem: &problem, params: *params, n_levels: levels.grids.n_levels(), observer };
+        let ((sliding, outcome), history) = levels.solve_all(&nested, 0);
+        let work = sliding.work;
+        (sliding.descent.into_solution(&outcome, history.levels, history.coarser), work)
     };
     solution.info.friction = friction(&solution, heights, kernel, work);
     Ok(solution)

@@ -135,7 +135,8 @@ impl<'a> SlidingDescent<'a> {
                 return Ok(Some(next));
             }
             let descent = &mut self.descent;
-            (descent.pressure.copy_from_slice(&before.0), descent.gap.copy_from_slice(&before.1));
+            descent.pressure.copy_from_slice(&before.0);
+            descent.gap.copy_from_slice(&before.1);
             (descent.zero_gap, descent.pressed) = (zero_gap, pressed);
             descent.directions.active.copy_from_slice(&elements.active);
         }
@@ -153,7 +154,9 @@ impl<'a> SlidingDescent<'a> {
         descent.precondition_mean(sums, set.n);
         let elements = ActiveElements::new(descent.directions.active.clone(), descent.layout.len());
         let mut residual = elements.gather(&descent.directions.preconditioned);
-        residual.iter_mut().for_each(|value| *value = -*value);
+        for value in &mut residual {
+            *value = -*value;
+        }
         let operator = &mut *descent.operators.corrections;
         let mut system = LinearSystem { operator, elements: &elements, fixed_mean: set.fixed_mean };
         // A step that gains little is limited by the choice of active elements, not by its accuracy.

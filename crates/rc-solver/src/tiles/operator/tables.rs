@@ -192,9 +192,10 @@ impl<T: Real> Prepared<T> {
             return Some(self.split.relaxed_love(&compliance));
         }
         let sides = spacing / spacing.min_element();
-        Some(match has_squares(self.base().grid()) {
-            true => self.split.relaxed_level(&compliance),
-            false => self.split.relaxed_uneven_level(0.5 * self.cutoff(), sides.into(), &compliance),
+        Some(if has_squares(self.base().grid()) {
+            self.split.relaxed_level(&compliance)
+        } else {
+            self.split.relaxed_uneven_level(0.5 * self.cutoff(), sides.into(), &compliance)
         })
     }
 

@@ -1,21 +1,14 @@
 //! The multilevel operator under a sliding surface, against the operator of the uniform grid.
 
-use std::sync::Arc;
-use std::time::Instant;
-
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rc_core::{DVec2, Grid, Operator, SlidingCompliance};
-use rc_kernel::{Love, Relaxation, ScaleSplit, SplitParams, Viscoelastic};
-use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet};
+use rc_kernel::{Love, Relaxation, ScaleSplit, Viscoelastic};
+use rc_quadtree::{CELLS, Elements, TILE, TileSet};
 
-use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
 use crate::grid::uniform_operator::UniformOperator;
 use crate::tiles::base::Base;
-use crate::tiles::operator::hierarchy::Hierarchy;
-use crate::tiles::operator::tables::Prepared;
 use crate::tiles::operator::tests::{SMALL, apply_above, spots, tiles_of_spots};
-use crate::tiles::operator::tile_operator::TileOperator;
 use crate::tiles::roughness::roughness;
 use crate::tiles::solid::Solid;
 use crate::tiles::split::GapSplit;
@@ -151,45 +144,6 @@ fn digits_do_not_depend_on_the_number_of_threads() {
         let one = with_threads(1);
         for n in [2, 5] {
             assert!(with_threads(n).iter().zip(&one).all(|(a, b)| a.to_bits() == b.to_bits()), "{n} threads");
-        }
-    }
-}
-
-/// Prints times of one application.
-#[test]
-#[ignore = "a measurement"]
-fn times() {
-    let tiles = tiles_of_spots(2048, SMALL, 5);
-    let pressure = spots(&tiles, SMALL, 5);
-    let base = Grid::square(128).expect("a grid");
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    for split in [None, Some(1e-6), Some(1e-10)] {
-        let params = split.map_or(SplitParams::quick(), |error| GapSplit::for_error(error).expect("a split").params);
-        for n in [0, 1, 10, 30] {
-            let modes = (0..n).map(|i| [0.9 / f64::from(n), 10_f64.powf(f64::from(i) / 5.0 - 4.0)]).collect();
-            let mut solid = Solid::from(Base::from(base));
-            if n > 0 {
-                solid = solid.under_sliding(SlidingCompliance { instantaneous: 0.1, modes });
-            }
-            let start = Instant::now();
-            let prepared = Prepared::<f64>::displacement(&ScaleSplit::new(params), solid, 0);
-            let tables = prepared.tables(Grid::square(2048).expect("a grid"));
-            let made = start.elapsed();
-            let hierarchy = Hierarchy::new(base, Elements::uniform(tiles.clone()), prepared.reach());
-            let mut operator = TileOperator::new(Arc::new(hierarchy), tables);
-            let mut apply = || {
-                write_blocks(&mut operator, pressure.chunks(BLOCK_CELLS), |p, cells| cells.copy_from_slice(p));
-                operator.apply();
-                let mut v = vec![0.0; pressure.len()];
-                read_blocks(&operator, v.chunks_mut(BLOCK_CELLS), |v, cells| v.copy_from_slice(cells));
-            };
-            pool.install(|| {
-                apply();
-                let start = Instant::now();
-                (0..5).for_each(|_| apply());
-                let time = start.elapsed() / 5;
-                println!("{params:?}, {n} modes, {} tiles: tables {made:?}, application {time:?}", tiles.len());
-            });
         }
     }
 }

@@ -259,7 +259,9 @@ fn sweep<T: Copy>(mode: &Mode<T>, columns: &[u32], n_columns: usize, blocks: &mu
             let place = mode.turned(columns[i] as usize, n_columns);
             if place > done {
                 let factor = fallen(place - done);
-                state.iter_mut().for_each(|value| *value *= factor);
+                for value in &mut state {
+                    *value *= factor;
+                }
             }
             done = place + 1;
             for x in 0..TILE {
