@@ -12,6 +12,7 @@ pub(crate) mod grids;
 pub(crate) mod nested;
 pub(crate) mod operator_error;
 pub(crate) mod params;
+pub(crate) mod sliding;
 pub(crate) mod split;
 mod tile_descent;
 pub(crate) mod tiles;

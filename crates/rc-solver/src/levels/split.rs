@@ -1,8 +1,9 @@
 //! A quick check, before a solve, that a kernel and its split by scale are one solid.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
-use rc_core::{Grid, Kernel, SplitByScale};
+use rc_core::{DVec2, Grid, Kernel, Sliding, SlidingModes, SplitByScale};
 use rc_kernel::{FreeLove, Love};
 
 use crate::problem::contract::{FEWEST_WAVES, places};
@@ -27,6 +28,32 @@ pub(crate) fn check_split(kernel: &dyn Kernel, split: &dyn SplitByScale, grid: G
     waves.filter(|&wave| wave != (0, 0)).try_for_each(|wave| {
         let deviation = check.deviation(wave)?;
         check.same("symbol", wave, own(wave.0, wave.1), half_space(wave.0, wave.1) + deviation)
+    })
+}
+
+/// Refuses `modes` that are not those of the symbol of their kernel under a sliding surface.
+///
+/// The symbols on `grid` are compared, as those of the solid at rest are.
+pub(crate) fn check_modes(
+    kernel: &dyn Kernel,
+    split: &dyn SplitByScale,
+    modes: &SlidingModes,
+    grid: Grid,
+) -> Result<(), ProblemError> {
+    let (check, compliance) = (Check { kernel: kernel.name(), split, grid }, modes.compliance.clone());
+    let sliding = Sliding::new(DVec2::X, Arc::new(move |q| compliance.at(q)));
+    let (Some(own), half_space) = (kernel.sliding_symbol(grid), Love.symbol_while(&sliding, grid)) else {
+        return Ok(());
+    };
+    let waves = octaves([grid.nx() / 2 + 1, grid.ny() / 2 + 1]);
+    waves.filter(|&wave| wave != (0, 0)).try_for_each(|wave| {
+        let (kx, ky) = (wave.0 as i64, wave.1 as i64);
+        let deviation = check.deviation(wave)? * sliding.compliance(grid.angular_wave(kx, ky));
+        let (own, of_split) = (own(kx, ky), half_space(kx, ky) + deviation);
+        let is_same = (of_split - own).norm() <= DIFFERENCE * own.norm();
+        let fault =
+            || check.fault("symbol under a sliding surface", wave, of_split.re, (own.re, ", as the kernel's own"));
+        if is_same { Ok(()) } else { Err(fault()) }
     })
 }
 
@@ -90,7 +117,42 @@ fn sinc(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use rc_kernel::{Relaxation, Viscoelastic};
+
     use super::*;
+
+    /// Love's squares of a material, with the modes of another velocity.
+    struct OtherModes(Viscoelastic<Love>, Viscoelastic<Love>);
+
+    impl Kernel for OtherModes {
+        fn name(&self) -> &'static str {
+            "other modes"
+        }
+
+        fn symbol(&self, grid: Grid) -> rc_core::Symbol<'_> {
+            self.0.symbol(grid)
+        }
+
+        fn sliding_symbol(&self, grid: Grid) -> Option<rc_core::ComplexSymbol<'_>> {
+            self.0.sliding_symbol(grid)
+        }
+
+        fn sliding_modes(&self) -> Option<SlidingModes> {
+            self.1.sliding_modes()
+        }
+    }
+
+    #[test]
+    fn modes_of_another_velocity_are_found() {
+        let rubber = Relaxation::single(10.0, 0.1).expect("a material");
+        let at = |velocity: f64| Viscoelastic::new(Love, &rubber, velocity * DVec2::X);
+        let check = |kernel: &OtherModes| {
+            let (modes, grid) = (kernel.sliding_modes().expect("modes"), Grid::square(64).expect("a grid"));
+            check_modes(kernel, &rc_kernel::HalfSpace, &modes, grid)
+        };
+        check(&OtherModes(at(0.1), at(0.1))).expect("its own");
+        assert!(check(&OtherModes(at(0.1), at(-0.1))).is_err() && check(&OtherModes(at(0.1), at(0.10001))).is_err());
+    }
 
     /// A split that deviates at waves of one length only, as its kernel does not.
     struct OneLength(f64);

@@ -11,7 +11,7 @@ use crate::levels::base_grid::base_sides;
 use crate::levels::checks::{check_memory, first_split, with_border_level};
 use crate::levels::estimate::Estimate;
 use crate::levels::params::AdaptiveParams;
-use crate::levels::split::check_split;
+use crate::levels::split::{check_modes, check_split};
 use crate::parallel;
 use crate::problem::adaptive_error::AdaptiveError;
 use crate::problem::capabilities::{Feature, refusal};
@@ -79,10 +79,11 @@ pub(crate) fn prepare<'a>(
     if kernel.sliding_velocity().is_some() {
         // Stencils with tails are those of elements of one size, on levels that halve.
         let has_form = boundary == Boundary::Periodic && ladder.is_even() && params.border_level == 0;
-        match (kernel.sliding_modes().filter(|_| has_form), refusal(&[Feature::Sliding], Some(Method::Adaptive))) {
-            (Some(modes), _) => kernels = kernels.under_sliding(modes),
-            (None, Some(refusal)) => return Err(refusal.into()),
-            (None, None) => unreachable!("the table refuses what has no adaptive form"),
+        if let Some(modes) = kernel.sliding_modes().filter(|_| has_form) {
+            check_modes(kernel, split, &modes, ladder.base())?;
+            kernels = kernels.under_sliding(modes);
+        } else if let Some(refusal) = refusal(&[Feature::LagOnGrid], Some(Method::Adaptive)) {
+            return Err(refusal.into());
         }
     }
     check_memory(grid, params.memory_limit, base_bytes(kernels.base().period()) + sampled_bytes, None)?;

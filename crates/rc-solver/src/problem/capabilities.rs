@@ -61,6 +61,8 @@ pub enum Feature {
     Checkpoint,
     /// A surface that slides over a material that relaxes.
     Sliding,
+    /// A sliding surface whose lag has no adaptive form: not along x, without relaxation times, or on an uneven grid.
+    LagOnGrid,
     /// Many loads or surfaces.
     Sweep,
     /// A picture while the solve runs.
@@ -70,9 +72,9 @@ pub enum Feature {
 }
 
 use Feature::{
-    AreaError, BorderLevel, Checkpoint, DryRun, Flat, FreeBorders, Hardness, HeightMap, KernelFunction, Layer, Leakage,
-    Line, OblongElements, OblongGrid, OtherSolid, OwnKernel, OwnOperator, Penetration, Ranks, Sliding, Spectral, Sweep,
-    UnevenGrid, Watch,
+    AreaError, BorderLevel, Checkpoint, DryRun, Flat, FreeBorders, Hardness, HeightMap, KernelFunction, LagOnGrid,
+    Layer, Leakage, Line, OblongElements, OblongGrid, OtherSolid, OwnKernel, OwnOperator, Penetration, Ranks, Sliding,
+    Spectral, Sweep, UnevenGrid, Watch,
 };
 
 /// Why a method does not take a feature; `None` if it does.
@@ -93,11 +95,13 @@ const SQUARE: Not = Some("the adaptive method needs square elements");
 const OF_LOVE: Not = Some("it needs the coefficients of the kernel love on the half-space");
 const HALVES: Not = Some("only the adaptive method halves elements at the edges of contacts");
 const OF_MAPS: Not = Some("its mesh divides the area of a map, and a profile has none");
-const LAGS: Not = Some("stencils that lag behind the pressure have no adaptive form");
+const NO_TAILS: Not =
+    Some("it needs a series of relaxation times, a velocity along x, and a grid that can be halved several times");
+const SYMMETRIC: Not = Some("its procedure needs a symmetric operator");
 const DIVIDED: Not = Some("only the adaptive method runs on several ranks");
 
 /// The rows of the table.
-const ROWS: [Row; 24] = [
+const ROWS: [Row; 25] = [
     (Spectral, "kernel", "the kernel spectral", [SPECTRAL, None, OF_LOVE]),
     (OwnKernel, "kernel", "a kernel without a split by scale", [NO_FORM, None, OF_LOVE]),
     (OtherSolid, "kernel", "another solid with a split by scale", [None, None, OF_LOVE]),
@@ -123,14 +127,15 @@ const ROWS: [Row; 24] = [
     (Leakage, "leakage", "the flow through the gap", ALL),
     (Ranks, "ranks", "several ranks", [None, DIVIDED, DIVIDED]),
     (Checkpoint, "checkpoint", "a checkpoint", ALL),
-    (Sliding, "speed", "a sliding surface", [LAGS, None, Some("its procedure needs a symmetric operator")]),
+    (Sliding, "speed", "a sliding surface", [None, None, SYMMETRIC]),
+    (LagOnGrid, "speed", "a lag that only whole grids have", [NO_TAILS, None, SYMMETRIC]),
     (Sweep, "sweep", "a sweep", ALL),
     (Watch, "watch", "a picture while it is solved", ALL),
     (DryRun, "dry_run", "a dry run", ALL),
 ];
 
 /// Features that exclude each other with every method. The message names the key of the first.
-const PAIRS: [(Feature, Feature, &str); 24] = [
+const PAIRS: [(Feature, Feature, &str); 26] = [
     (Spectral, FreeBorders, "its waves are periodic"),
     (FreeBorders, KernelFunction, "the function describes a periodic cell"),
     (FreeBorders, Layer, "the response of a layer is known in a periodic cell only"),
@@ -149,6 +154,8 @@ const PAIRS: [(Feature, Feature, &str); 24] = [
     (Line, Leakage, "each contact of a profile closes the gap along its whole width"),
     (Sliding, FreeBorders, "its waves are periodic"),
     (Sliding, KernelFunction, "the function has no compliance for each alias of a wave"),
+    (Sliding, BorderLevel, "the displacement lags behind elements of one size only"),
+    (Sliding, Ranks, "rows of tiles are not divided among ranks"),
     (Watch, DryRun, "a dry run has no contact to show"),
     (Watch, Ranks, "no rank has the whole contact while it is solved"),
     (Leakage, Ranks, "the flow is not solved over ranks"),

@@ -5,5 +5,4 @@
 //! ⟨p (g - min g)⟩ uses no symmetry. `docs/sliding.md` describes the iteration.
 
 pub(crate) mod friction;
-pub(crate) mod levels;
 pub(crate) mod newton;

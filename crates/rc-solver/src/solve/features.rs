@@ -16,12 +16,15 @@ use crate::tiles::ladder::{Ladder, has_squares};
 pub(super) fn features(problem: &ContactProblem<'_>, params: &SolveParams) -> Vec<Feature> {
     let (heights, kernel) = (&problem.heights, problem.kernel.get());
     let is_layer = kernel.uniform_displacement().is_some();
+    let is_sliding = kernel.sliding_velocity().is_some();
+    let has_tails = || kernel.split().is_some() && kernel.sliding_modes().is_some() && !is_uneven(problem, params);
     let (has_border, has_ranks) = (params.border_level > 0, problem.is_shared());
     let all = [
         (Feature::Line, heights.grid().ny() == 1 && problem.boundary() == Boundary::Periodic),
         (Feature::Layer, is_layer),
-        (Feature::Sliding, kernel.sliding_velocity().is_some()),
-        (Feature::OwnKernel, !is_layer && kernel.split().is_none() && kernel.sliding_velocity().is_none()),
+        (Feature::Sliding, is_sliding),
+        (Feature::LagOnGrid, is_sliding && !has_tails()),
+        (Feature::OwnKernel, !is_layer && kernel.split().is_none() && !is_sliding),
         (Feature::OtherSolid, kernel.split().is_some_and(|split| split.deviates_below(0.0) > 0.0)),
         (Feature::FreeBorders, problem.boundary() == Boundary::Free),
         (Feature::Penetration, matches!(problem.control, Control::Penetration(_))),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rc_comm::{Ranks, run_threads};
 use rc_core::{DVec2, Field, Grid, HeightField, HeightSource, Kernel};
-use rc_kernel::{FreeLove, Layer, Love, LoveLayer, Spectral};
+use rc_kernel::{FreeLove, Layer, Love, LoveLayer, Relaxation, Spectral, Viscoelastic};
 use rc_solver::{Checkpoint, ContactProblem, Control, Feature, Method, SolveError, SolveParams, Subject, refusal};
 
 use crate::bumps;
@@ -53,7 +53,11 @@ fn planned(asked: &[Option<Feature>], method: Option<Method>, ranks: Ranks) -> O
     let map = Field::new(grid, bumps(grid.nx(), grid.ny()).values().iter().map(|h| flat * h).collect()).expect("a map");
     let heights: HeightSource<'_> = if has(Feature::HeightMap) { (&map).into() } else { Waves.on(grid) };
     let layer = LoveLayer(Layer { thickness: 0.3, poisson: 0.3 });
+    let rubber = Relaxation::single(10.0, 0.1).expect("a material");
+    let along = if has(Feature::LagOnGrid) && !has(Feature::UnevenGrid) { DVec2::Y } else { DVec2::X };
+    let viscoelastic = Viscoelastic::new(Love, &rubber, 0.1 * along);
     let kernel: &dyn Kernel = match () {
+        () if has(Feature::Sliding) => &viscoelastic,
         () if has(Feature::Layer) => &layer,
         () if has(Feature::OwnKernel) => &Spectral,
         () if has(Feature::FreeBorders) => &FreeLove,
@@ -74,7 +78,14 @@ fn planned(asked: &[Option<Feature>], method: Option<Method>, ranks: Ranks) -> O
 #[test]
 fn plans_are_refused_exactly_as_the_table_says() {
     let choices: [&[&[Option<Feature>]]; 7] = [
-        &[&[None], &[Some(Feature::OwnKernel)], &[Some(Feature::Layer)], &[Some(Feature::FreeBorders)]],
+        &[
+            &[None],
+            &[Some(Feature::OwnKernel)],
+            &[Some(Feature::Layer)],
+            &[Some(Feature::FreeBorders)],
+            &[Some(Feature::Sliding)],
+            &[Some(Feature::Sliding), Some(Feature::LagOnGrid)],
+        ],
         &[&[None], &[Some(Feature::HeightMap)], &[Some(Feature::HeightMap), Some(Feature::Flat)]],
         &[
             &[None],
@@ -100,6 +111,10 @@ fn plans_are_refused_exactly_as_the_table_says() {
         // A profile has no waves along y, and with free borders one row is a strip of a surface.
         let has = |feature| features.contains(&feature);
         if has(Feature::Line) && (!has(Feature::HeightMap) || has(Feature::FreeBorders)) {
+            continue;
+        }
+        // On a grid that cannot be halved, any lag is one of whole grids.
+        if has(Feature::Sliding) && has(Feature::UnevenGrid) && !has(Feature::LagOnGrid) {
             continue;
         }
         for method in [None, Some(Method::Adaptive), Some(Method::Uniform), Some(Method::GaussSeidel)] {

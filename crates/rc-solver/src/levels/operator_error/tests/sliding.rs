@@ -5,8 +5,8 @@ use rc_kernel::{Relaxation, Viscoelastic};
 
 use crate::grid::stiffness::contact_stiffness;
 use crate::levels::operator_error::tests::*;
+use crate::levels::sliding::solve_sliding;
 use crate::problem::bounds::Bounds;
-use crate::sliding::levels::solve_sliding;
 use crate::solution::solved::Solved;
 
 /// One relaxation time with a loss tangent of 1.4, and a series over five decades.

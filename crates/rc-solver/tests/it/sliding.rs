@@ -1,0 +1,71 @@
+//! Contact under a sliding surface by the adaptive method, against the uniform one.
+
+use rc_core::{DVec2, Field, Silent};
+use rc_kernel::{Love, Relaxation, Viscoelastic};
+use rc_solver::{ContactProblem, Control, Friction, Method, Solution, SolveParams};
+
+use crate::bumps;
+
+const SIDE: usize = 256;
+
+fn rubber() -> Relaxation {
+    Relaxation::prony(&[[4.0, 0.02], [5.0, 0.5]]).expect("a material")
+}
+
+fn solve(heights: &Field, velocity: f64, hardness: f64, method: Option<Method>) -> Solution<'static> {
+    let kernel = Viscoelastic::new(Love, &rubber(), velocity * DVec2::X);
+    let params = SolveParams { method, ..SolveParams::to_tolerance(1e-8) };
+    let problem = ContactProblem::new(heights, Control::MeanPressure(2e-3)).with_kernel(&kernel);
+    problem.with_hardness(hardness).solve(&params, &Silent).expect("a solution").into_owned()
+}
+
+fn friction(solution: &Solution<'_>) -> Friction {
+    solution.info().friction.expect("it slides")
+}
+
+#[test]
+fn the_adaptive_method_is_chosen_and_agrees_with_the_uniform_one() {
+    let heights = bumps(SIDE, SIDE);
+    for (velocity, hardness) in [(0.1, f64::INFINITY), (-3.0, f64::INFINITY), (0.1, 0.03)] {
+        let tiles = solve(&heights, velocity, hardness, None);
+        let grid = solve(&heights, velocity, hardness, Some(Method::Uniform));
+        assert_eq!((tiles.method(), grid.method()), (Method::Adaptive, Method::Uniform));
+        let (found, expected) = (friction(&tiles), friction(&grid));
+        let near = |found: f64, expected: f64, error: f64| (found - expected).abs() < error * expected.abs();
+        assert!(near(found.coefficient, expected.coefficient, 1e-5), "{velocity}: {found:?} for {expected:?}");
+        assert!(found.coefficient > 0.0 && near(found.of_displacement, found.coefficient, 0.02), "{found:?}");
+        let [penetration, others] = [&tiles, &grid].map(|solution| solution.info().penetration);
+        assert!(near(penetration, others, 1e-4), "{velocity}: {penetration} for {others}");
+        let [rms, other] = [&tiles, &grid].map(|solution| solution.pressure().rms());
+        assert!(near(rms, other, 1e-4), "{velocity}: {rms} for {other}");
+        if hardness.is_infinite() {
+            assert!(near(tiles.stiffness(), grid.stiffness(), 2e-3));
+        }
+        // The gap of the whole cell is computed when it is asked for.
+        let difference = tiles.gap().values().iter().zip(grid.gap().values()).map(|(a, b)| (a - b).abs());
+        assert!(difference.fold(0.0, f64::max) < 1e-3 * (heights.max() - heights.min()));
+    }
+}
+
+#[test]
+fn sliding_the_other_way_over_the_mirrored_surface_is_the_same() {
+    let heights = bumps(SIDE, SIDE);
+    let mirrored = heights.values().chunks(SIDE).flat_map(|row| row.iter().rev().copied()).collect();
+    let mirrored = Field::new(heights.grid(), mirrored).expect("a value for each element");
+    let [one, other] = [(&heights, 0.1), (&mirrored, -0.1)]
+        .map(|(heights, velocity)| friction(&solve(heights, velocity, f64::INFINITY, Some(Method::Adaptive))));
+    assert!((one.coefficient / other.coefficient - 1.0).abs() < 1e-6, "{one:?}, {other:?}");
+    assert!((one.lateral + other.lateral).abs() < 1e-6 * one.coefficient, "{one:?}, {other:?}");
+}
+
+#[test]
+fn digits_do_not_depend_on_the_number_of_threads() {
+    let heights = bumps(SIDE, SIDE);
+    let with_threads = |n: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().expect("threads");
+        let solution = pool.install(|| solve(&heights, 0.1, f64::INFINITY, Some(Method::Adaptive)));
+        (friction(&solution), solution.pressure().values().to_vec())
+    };
+    let (one, two) = (with_threads(1), with_threads(3));
+    assert!(one == two, "{:?}, {:?}", one.0, two.0);
+}
