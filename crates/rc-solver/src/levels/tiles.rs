@@ -9,7 +9,7 @@ use rc_quadtree::{ContactFields, Elements, RING, divide};
 use crate::descent::load::mean_pressure;
 use crate::levels::base_grid::base_sides;
 use crate::levels::checks::{check_memory, first_split, with_border_level};
-use crate::levels::estimate::Estimate;
+use crate::levels::estimate::{Estimate, MORE_BYTES_OF_SLIDING};
 use crate::levels::params::AdaptiveParams;
 use crate::levels::split::{check_modes, check_split};
 use crate::parallel;
@@ -133,7 +133,8 @@ impl<'a> TileLevels<'a> {
     pub(crate) fn estimate(&self) -> Estimate {
         let TileData { heights, sampled_bytes, .. } = &*self.data;
         let estimate = Estimate::new(heights, self.params.border_level, &self.problem, self.base().period());
-        Estimate { adaptive_bytes: estimate.adaptive_bytes + sampled_bytes, ..estimate }
+        let of_sliding = if self.data.kernels.is_sliding() { MORE_BYTES_OF_SLIDING * estimate.cells } else { 0.0 };
+        Estimate { adaptive_bytes: estimate.adaptive_bytes + sampled_bytes + of_sliding, ..estimate }
     }
 
     /// The same levels with another split for certificates.
