@@ -218,6 +218,7 @@ fn mirrored_and_turned_surfaces_have_mirrored_and_turned_contacts() {
 /// Loss tangents up to 5, light and heavy loads, few and many scales.
 #[test]
 fn strongly_damped_solids_converge() {
+    // Newton's method alone fails in a tenth of these scenes.
     for seed in [2, 14, 25] {
         let heights = rough(seed, 128);
         for glassy_ratio in [10.0, 30.0, 100.0] {

@@ -32,6 +32,7 @@ impl Descent<'_> {
             return self.settle(sums);
         }
         match sums.scale_to_penetration(self.problem) {
+            _ if self.has_constant => self.follow_penetration(sums),
             None if !sums.may_scale() => self.follow_penetration(sums),
             None => self.settle(sums),
             Some(_) if self.problem.support.is_none() && sums.n_contact >= self.n_cell() => {

@@ -62,7 +62,7 @@ impl Descent<'_> {
     /// Restores the loads of squares after clipping. The gap follows all changes of the pressure.
     fn restore(&mut self, shares: &Shares, reached: bool, unit: f64) -> GapSums {
         // Loads are only moved between squares. Scaling, which is exact, then sets the load of the cell.
-        let scale = if reached {
+        let scale = if reached || self.has_constant {
             self.share_within_bounds(shares, unit);
             1.0
         } else {

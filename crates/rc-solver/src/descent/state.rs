@@ -44,6 +44,10 @@ pub(crate) struct Descent<'a> {
     pub(crate) pressed: f64,
     /// The stiffness of the last step along p (1 - p/H), which preconditions the mean. `None` if it has none.
     pub(crate) stiffness: Option<f64>,
+    /// Whether the gap has a part that does not follow the pressure, beside the heights.
+    ///
+    /// Scaling a pressure does not scale the gap then.
+    pub(crate) has_constant: bool,
     /// Whether a pressure was given to start from. The flag below says the same of the gap.
     pub(crate) has_start: bool,
     pub(crate) has_gap: bool,
@@ -95,6 +99,7 @@ impl<'a> Descent<'a> {
             zero_gap: 0.0,
             pressed: f64::INFINITY,
             stiffness: None,
+            has_constant: false,
             has_start,
             has_gap,
             info: LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 },

@@ -27,14 +27,15 @@ const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 /// A part s of a step is taken if it lowers the energy error by this times s.
 const PROGRESS: f64 = 0.1;
 
-/// Failed Newton steps in a row after which steps with the storage modulus are solved well.
-const FAILURES: usize = 3;
+/// Failed Newton steps, without a new smallest error, after which steps with the storage modulus are solved well.
+const FAILURES: u32 = 3;
 
-/// Such steps, and the rounds of each. They are doubled up to [`LONGEST`] where the error has not fallen to [`GAIN`] of
-/// that at the last such steps.
-const LONG: [usize; 2] = [4, 4];
-const LONGEST: [usize; 2] = [128, 32];
-const GAIN: f64 = 0.7;
+/// Such steps, and the rounds of each. Both are doubled at each further failure, up to [`LONGEST`].
+const LONG: [usize; 2] = [4, 8];
+const LONGEST: [usize; 2] = [256, 32];
+
+/// Ratio to the smallest error so far below which an error is a new smallest one.
+const GAIN: f64 = 0.9;
 
 /// Part of its first error to which such a step is solved.
 const INNER: f64 = 0.1;
@@ -68,7 +69,7 @@ impl<'a> SlidingDescent<'a> {
     /// Iterates until the goal is reached, or cannot be reached.
     pub(crate) fn run(&mut self, goal: Goal, watch: &DescentObserver<'_>) -> Outcome {
         let mut sums = self.descent.start();
-        let mut fallback = Fallback::new();
+        let mut fallback = Fallback::default();
         let (mut smallest, mut rounds) = (f64::INFINITY, 0);
         loop {
             let mut error = self.descent.error(&sums);
@@ -84,17 +85,17 @@ impl<'a> SlidingDescent<'a> {
                     return outcome;
                 }
             }
-            (smallest, rounds) = if error < 0.9 * smallest { (error, 0) } else { (smallest, rounds + 1) };
+            (smallest, rounds) = if error < GAIN * smallest { (error, 0) } else { (smallest, rounds + 1) };
+            if rounds == 0 {
+                fallback.failures = 0;
+            }
             if self.descent.info.iterations >= goal.max_iterations || rounds > PATIENCE {
                 sums = self.descent.refresh();
                 return self.descent.unfinished(goal, &sums);
             }
             let next = match self.newton_step(&sums, watch.observer) {
                 Ok(None) => self.storage_rounds(&sums, &mut fallback, watch.observer),
-                Ok(Some(next)) => {
-                    fallback.failures = 0;
-                    Ok(next)
-                }
+                Ok(Some(next)) => Ok(next),
                 Err(stopped) => Err(stopped),
             };
             let Ok(next) = next else {
@@ -168,12 +169,11 @@ impl<'a> SlidingDescent<'a> {
         fallback: &mut Fallback,
         observer: &dyn Observer,
     ) -> Result<GapSums, Stopped> {
-        fallback.fail(self.energy_error(sums));
-        let mut sums = *sums;
-        for _ in 0..fallback.steps {
+        let ([steps, rounds], mut sums) = (fallback.next(), *sums);
+        for _ in 0..steps {
             let wanted = INNER * self.descent.error(&sums);
             self.exchange();
-            for _ in 0..fallback.rounds {
+            for _ in 0..rounds {
                 self.work.storage_rounds += 1;
                 let round = self.descent.round(1, &sums, observer);
                 if round.is_err() {
@@ -192,39 +192,29 @@ impl<'a> SlidingDescent<'a> {
     }
 
     /// Exchanges the operator for that with the storage modulus, or back.
+    ///
+    /// What the operators differ in is a part of the gap that stays.
     fn exchange(&mut self) {
         std::mem::swap(&mut self.descent.operators.corrections, &mut self.storage);
+        self.descent.has_constant = !self.descent.has_constant;
         self.descent.start_afresh();
     }
 }
 
 /// What follows a failed Newton step.
+#[derive(Default)]
 struct Fallback {
-    /// Failed Newton steps in a row.
-    failures: usize,
-    /// Steps with the storage modulus, and the rounds that each of them may take.
-    steps: usize,
-    rounds: usize,
-    /// The energy error at the last long sequence of steps.
-    error: f64,
+    /// Failed Newton steps since the error last was the smallest.
+    failures: u32,
 }
 
 impl Fallback {
-    fn new() -> Self {
-        Self { failures: 0, steps: 1, rounds: 1, error: f64::INFINITY }
-    }
-
-    /// Notes a failed step at this energy error.
-    fn fail(&mut self, error: f64) {
+    /// Number of steps with the storage modulus, and of the rounds that each of them may take.
+    fn next(&mut self) -> [usize; 2] {
         self.failures += 1;
-        if self.failures < FAILURES {
-            (self.steps, self.rounds) = (1, 1);
-            return;
+        match self.failures.checked_sub(FAILURES) {
+            None => [1, 1],
+            Some(more) => [0, 1].map(|i| (LONG[i] << more.min(8)).min(LONGEST[i])),
         }
-        let has_gained = error < GAIN * self.error;
-        let [steps, rounds] =
-            if has_gained { LONG } else { [self.steps.max(LONG[0] / 2) * 2, self.rounds.max(LONG[1] / 2) * 2] };
-        (self.steps, self.rounds) = (steps.min(LONGEST[0]), rounds.min(LONGEST[1]));
-        self.error = self.error.min(error);
     }
 }
