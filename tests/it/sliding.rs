@@ -170,10 +170,10 @@ fn at_both_ends_of_the_speed_the_contact_is_elastic() {
         a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / b.iter().copied().fold(0.0, f64::max)
     };
     let slow = sliding(1e-9);
-    assert!(differs(&slow, &rest) < 1e-5 && friction(&slow).coefficient.abs() < 1e-8);
+    assert!(differs(&slow, &rest) < 1e-5 && friction(&slow).coefficient.abs() < friction(&slow).error);
     assert_close("stiffness", slow.stiffness(), rest.stiffness(), 2e-3);
     let (fast, glassy) = (sliding(1e6), solved(&heights, &Glassy, 1e-3, 1e-9));
-    assert!(differs(&fast, &glassy) < 1e-5 && friction(&fast).coefficient < 1e-6);
+    assert!(differs(&fast, &glassy) < 1e-5 && friction(&fast).coefficient.abs() < friction(&fast).error);
 }
 
 #[test]

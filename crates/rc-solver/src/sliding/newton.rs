@@ -28,7 +28,7 @@ const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 const PROGRESS: f64 = 0.1;
 
 /// Failed Newton steps, without a new smallest error, after which steps with the storage modulus are solved well.
-const FAILURES: u32 = 3;
+const FAILURES: u32 = 6;
 
 /// Such steps, and the rounds of each. Both are doubled at each further failure, up to [`LONGEST`].
 const LONG: [usize; 2] = [4, 8];
@@ -39,6 +39,10 @@ const GAIN: f64 = 0.9;
 
 /// Part of its first error to which such a step is solved.
 const INNER: f64 = 0.1;
+
+/// Factor of the maximum number of iterations. Steps with the storage modulus are many and small where the material
+/// loses much, and they converge.
+const ITERATIONS: usize = 10;
 
 /// Rounds without progress after which the iteration gives up.
 const PATIENCE: usize = 200;
@@ -89,7 +93,7 @@ impl<'a> SlidingDescent<'a> {
             if rounds == 0 {
                 fallback.failures = 0;
             }
-            if self.descent.info.iterations >= goal.max_iterations || rounds > PATIENCE {
+            if self.descent.info.iterations >= ITERATIONS * goal.max_iterations || rounds > PATIENCE {
                 sums = self.descent.refresh();
                 return self.descent.unfinished(goal, &sums);
             }
@@ -161,8 +165,9 @@ impl<'a> SlidingDescent<'a> {
     /// Steps with the storage modulus.
     ///
     /// A step solves the contact of the elastic solid under heights that make up for what the operators differ in. Its
-    /// gap is that of the present pressure, and follows the elastic solid. The first step after a Newton step takes one
-    /// round. Newton steps that fail again and again are followed by more and more steps, solved more and more exactly.
+    /// gap is that of the present pressure, and follows the elastic solid. The first of them take one round each, which
+    /// mostly is enough for the next Newton step. Newton steps that fail again and again are followed by more and more
+    /// steps, solved well.
     fn storage_rounds(
         &mut self,
         sums: &GapSums,
@@ -170,12 +175,13 @@ impl<'a> SlidingDescent<'a> {
         observer: &dyn Observer,
     ) -> Result<GapSums, Stopped> {
         let ([steps, rounds], mut sums) = (fallback.next(), *sums);
+        let steps_of_round = if self.storage.keeps_steps() { 2 } else { 1 };
         for _ in 0..steps {
             let wanted = INNER * self.descent.error(&sums);
             self.exchange();
             for _ in 0..rounds {
                 self.work.storage_rounds += 1;
-                let round = self.descent.round(1, &sums, observer);
+                let round = self.descent.round(steps_of_round, &sums, observer);
                 if round.is_err() {
                     self.exchange();
                 }
