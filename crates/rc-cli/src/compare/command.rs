@@ -19,10 +19,10 @@ use crate::files::result::ResultFolder;
 use crate::terminal;
 
 /// Name of the record in the folder of `--out`.
-const RECORD_FILE: &str = "compare.json";
+pub(crate) const RECORD_FILE: &str = "compare.json";
 
 /// Name of the picture in the folder of `--out`.
-const PICTURE_FILE: &str = "difference.png";
+pub(crate) const PICTURE_FILE: &str = "difference.png";
 
 /// Heads of the table.
 const HEADS: [&str; 6] = ["", "A", "B", "B - A", "of A", "in bars"];

@@ -11,7 +11,7 @@ use rc_plot::{ContactRows, save_png};
 use rc_sweep::files::{self, FileError};
 
 /// The picture in the folder of the result. `contact.png` may belong to an earlier result, so it has another name.
-const PICTURE: &str = "watch.png";
+pub(crate) const PICTURE: &str = "watch.png";
 
 /// Minimum time from one picture to the next.
 const INTERVAL: Duration = Duration::from_secs(1);

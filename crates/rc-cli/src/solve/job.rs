@@ -4,13 +4,14 @@ use std::time::Instant;
 
 use rc_comm::Ranks;
 use rc_sweep::memory::Budget;
-use rc_sweep::{Summary, Warning, files};
+use rc_sweep::{Summary, Warning};
 
 use super::checked::CheckedScene;
 use super::dry_run;
 use super::solved::Solved;
 use crate::error::CliError;
 use crate::export::{xarray, zarr};
+use crate::files::kind::Kind;
 use crate::run::progress::Progress;
 use crate::run::stop::{Reason, Stop};
 use crate::run::threads;
@@ -90,7 +91,7 @@ impl Job {
     pub(super) fn execute(&self) -> Result<(), CliError> {
         let ranks = self.ranks();
         if let Some(folder) = &self.run.out {
-            let checked = if ranks.rank() == 0 { files::check_folder(folder).map_err(Into::into) } else { Ok(()) };
+            let checked = if ranks.rank() == 0 { Kind::Result.check_out(folder) } else { Ok(()) };
             together(ranks, checked)?;
         }
         let progress = self.progress();

@@ -19,6 +19,7 @@ use super::record::{STUDY_FILE, StudyRecord, TreatmentOf, lines};
 use super::rows::{Pictures, SAME_AS, STEP, StudyRows, TREATMENT};
 use super::variants::Base;
 use crate::error::CliError;
+use crate::files::kind::Kind;
 use crate::prepare::args::{after_crops, check_filled, treatments};
 use crate::report::{self, PAGE_FILE};
 use crate::run::threads;
@@ -129,7 +130,7 @@ pub(super) fn run(args: StudyArgs, stop: Option<&dyn Observer>) -> Result<Solved
     resolve::check_size_and_material(&scene.surface, &scene.contact)?;
     let n_threads = threads::start(run.threads)?;
     let folder = run.out.clone().unwrap_or_else(|| PathBuf::from("."));
-    files::check_folder(&folder)?;
+    Kind::Study.check_out(&folder)?;
     let resume = args.resume;
     let study = Study::new(args, scene)?;
     let plan = study.rows.plan(&study.pressures)?;
