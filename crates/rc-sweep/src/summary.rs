@@ -100,11 +100,14 @@ pub struct Summary {
     pub contact_conductance: Option<f64>,
     /// Estimated error of `contact_conductance` (1/m).
     pub contact_conductance_error: Option<f64>,
-    /// Conductance of the nominal area for the given conductivities, in their unit per metre.
+    /// Conductance per nominal area for the given conductivities (W/(m² K) for thermal ones, S/m² for electrical ones).
     ///
     /// It exists only with conductivities, and is null in full contact.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
     pub conductance: Option<Option<f64>>,
+    /// Estimated error of `conductance`, in its unit.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
+    pub conductance_error: Option<Option<f64>>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
     /// rms height about the mean (m).
@@ -201,6 +204,13 @@ fn as_given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<
     Option::deserialize(deserializer).map(Some)
 }
 
+impl SolveContext {
+    /// A conductance (1/m) times the conductivity, if there is one.
+    fn of_bodies(&self, per_unit: Option<f64>) -> Option<Option<f64>> {
+        self.conductivity.map(|conductivity| per_unit.map(|value| value * conductivity))
+    }
+}
+
 /// Conductance for unit conductivity and its error (1/m). There is none in full contact.
 fn conductance(solution: &Solution<'_>, units: Units) -> [Option<f64>; 2] {
     // A conductance in 1/λ is a stiffness in E*/λ per E*.
@@ -214,7 +224,6 @@ impl Summary {
     #[must_use]
     pub fn of(solution: &Solution<'_>, units: Units, context: &SolveContext) -> Self {
         let (info, observables, grid) = (solution.info(), solution.observables(), solution.grid());
-        let stiffness = units.pascals_per_metre(solution.stiffness());
         let [conductance, error_of_conductance] = conductance(solution, units);
         let [tolerance, energy_tolerance] = tolerances(solution.bound());
         Self {
@@ -246,10 +255,11 @@ impl Summary {
             max_pressure: units.pascals(observables.max_pressure),
             mean_gap: units.metres(observables.mean_gap),
             mean_gap_error: Some(units.metres(observables.mean_gap_error)),
-            contact_stiffness: Some(stiffness).filter(|value| value.is_finite()),
+            contact_stiffness: Some(units.pascals_per_metre(solution.stiffness())).filter(|value| value.is_finite()),
             contact_conductance: conductance,
             contact_conductance_error: error_of_conductance,
-            conductance: context.conductivity.map(|of_bodies| conductance.map(|per_unit| per_unit * of_bodies)),
+            conductance: context.of_bodies(conductance),
+            conductance_error: context.of_bodies(error_of_conductance),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,

@@ -85,7 +85,7 @@ impl CurvePicture {
         let log_y = is_log && quantity.name != "gap";
         let seeds = table.surfaces().len() / table.scenes().len().max(1);
         let of_seeds = if seeds > 1 { ", means over seeds" } else { "" };
-        let title = quantity.words.split(',').next().unwrap_or_default();
+        let title = quantity.words;
         Some(Self {
             name: if quantity.name == "of_bodies" { "conductance-of-bodies" } else { quantity.name },
             title: format!("{}{}{of_seeds}", title[..1].to_uppercase(), &title[1..]),

@@ -71,7 +71,7 @@ pub(super) fn lines(rows: &SweepRows) -> SweepRows {
 
 /// Whether a prefix before the unit means what it says. It would belong to the metre, and not to its power.
 pub(crate) fn takes_prefix(unit: &str) -> bool {
-    !["1/m", "m³"].contains(&unit)
+    !["1/m", "m³", "m³/s", "W/(m² K) or S/m²"].contains(&unit)
 }
 
 /// `value` in the words of a table.

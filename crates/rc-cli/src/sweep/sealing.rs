@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::time::Instant;
 
-use rc_core::quantity::engineering;
+use rc_core::quantity::{digits, engineering};
 use rc_core::{Boundary, Silent};
 use rc_sweep::memory::Budget;
 use rc_sweep::{Sweep, SweepRow, files, to_json};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::surfaces::Surfaces;
 use crate::curves::means::Mean;
@@ -34,8 +34,8 @@ const FEWEST: usize = 3;
 const AXES: [&str; 2] = ["x", "y"];
 
 /// The sealing pressures of a sweep.
-#[derive(Debug, Serialize)]
-pub(super) struct Sealing {
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Sealing {
     /// The sealing pressure (Pa) of the only problem; `None` if there are several, or its film does not close between the
     /// loads.
     #[serde(rename = "sealing_pressure")]
@@ -47,9 +47,9 @@ pub(super) struct Sealing {
 }
 
 /// The seal of one scene, of which surfaces are realisations.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Problem {
-    #[serde(skip_serializing_if = "String::is_empty")]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     scene: String,
     /// Mean over surfaces and axes (Pa); `None` unless the film of each closes between the loads.
     #[serde(rename = "sealing_pressure")]
@@ -62,22 +62,26 @@ struct Problem {
 }
 
 /// The sealing pressure of one surface along one axis.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 struct SurfaceSeal {
     seed: Option<u64>,
-    axis: &'static str,
+    axis: String,
     /// Middle of the bracket (Pa).
     #[serde(rename = "sealing_pressure")]
     pressure: Option<f64>,
     /// Highest mean pressure (Pa) at which the film leaks, and lowest at which it does not; null where no load shows it.
     bracket: [Option<f64>; 2],
+    /// Contact area (fraction of the nominal area) at both ends of the bracket.
+    #[serde(default)]
+    area_fraction: [Option<f64>; 2],
 }
 
-/// A load and its mean pressure (Pa).
+/// A load, its mean pressure (Pa) and its contact area (fraction).
 #[derive(Clone, Copy)]
 struct State {
     load: f64,
     pressure: f64,
+    area: f64,
 }
 
 /// Finds the sealing pressures of the finished rows of `sweep`, and writes them.
@@ -100,11 +104,9 @@ pub(super) fn find(surfaces: &Surfaces, sweep: &Sweep, folder: &Path, stop: &Sto
             problems.push(Problem::new(name));
         }
         for (axis, name) in AXES.into_iter().enumerate() {
-            let bracket = search.bracket(axis)?;
-            let pressure = bracket[0].zip(bracket[1]).map(|(leaks, seals)| 0.5 * (leaks + seals));
-            let seal = SurfaceSeal { seed: surface.seed(), axis: name, pressure, bracket };
+            let ends = search.bracket(axis)?;
             if let Some(problem) = problems.last_mut() {
-                problem.surfaces.push(seal);
+                problem.surfaces.push(SurfaceSeal::new(surface.seed(), name, ends));
             }
         }
     }
@@ -128,7 +130,8 @@ fn solved_before(sweep: &Sweep, row: &SweepRow) -> Option<(State, [bool; 2])> {
     }
     let percolates = cells.get("percolates")?.as_array()?;
     let pressure = cells.get("mean_pressure")?.as_f64()?;
-    Some((State { load: row.load, pressure }, [percolates.first()?.as_bool()?, percolates.get(1)?.as_bool()?]))
+    let area = cells.get("area_fraction")?.as_f64()?;
+    Some((State { load: row.load, pressure, area }, [percolates.first()?.as_bool()?, percolates.get(1)?.as_bool()?]))
 }
 
 /// The search on one surface.
@@ -142,14 +145,14 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The last pressure with a flow along `axis` and the first without, after bisection.
-    fn bracket(&mut self, axis: usize) -> Result<[Option<f64>; 2], CliError> {
+    /// The last state with a flow along `axis` and the first without, after bisection.
+    fn bracket(&mut self, axis: usize) -> Result<[Option<State>; 2], CliError> {
         loop {
             let leaks = self.rows.iter().rposition(|(_, percolates)| percolates[axis]);
             let seals = leaks.map_or(0, |last| last + 1);
             let at = |i: usize| self.rows.get(i).map(|(state, _)| *state);
             let (Some(low), Some(high)) = (leaks.and_then(at), at(seals)) else {
-                return Ok([leaks.and_then(at), at(seals)].map(|state| state.map(|state| state.pressure)));
+                return Ok([leaks.and_then(at), at(seals)]);
             };
             let is_narrow =
                 high.pressure <= low.pressure * (1.0 + NARROW) || high.load <= low.load * (1.0 + LEAST_STEP);
@@ -158,7 +161,7 @@ impl Search<'_> {
             } else {
                 self.solved((low.load * high.load).sqrt())?
             };
-            let Some(state) = between else { return Ok([Some(low.pressure), Some(high.pressure)]) };
+            let Some(state) = between else { return Ok([Some(low), Some(high)]) };
             self.rows.insert(seals, state);
         }
     }
@@ -187,9 +190,10 @@ impl Search<'_> {
             }
         };
         let pressure = contact.units.pascals(solution.info().mean_pressure);
+        let area = solution.observables().area.fraction;
         drop(solution);
         self.heights = Some(surface);
-        Ok(Some((State { load, pressure }, percolates)))
+        Ok(Some((State { load, pressure, area }, percolates)))
     }
 }
 
@@ -218,14 +222,8 @@ impl Problem {
     fn line(&self) -> String {
         let pressure = |value: f64| engineering(value, "Pa");
         let name = if self.scene.is_empty() { String::new() } else { format!(" ({})", self.scene) };
-        let of_axis = |seal: &SurfaceSeal| match (seal.pressure, seal.bracket) {
-            (Some(found), _) => format!("{} along {}", pressure(found), seal.axis),
-            (None, [Some(leaks), _]) => format!("above {} along {}", pressure(leaks), seal.axis),
-            (None, [None, Some(seals)]) => format!("below {} along {}", pressure(seals), seal.axis),
-            (None, [None, None]) => format!("unknown along {}", seal.axis),
-        };
         if self.surfaces.len() == AXES.len() {
-            let axes = self.surfaces.iter().map(of_axis).collect::<Vec<_>>().join(", ");
+            let axes = self.surfaces.iter().map(SurfaceSeal::words).collect::<Vec<_>>().join(", ");
             return format!("sealing pressure{name}: {axes}\n");
         }
         let n = self.surfaces.len() / AXES.len();
@@ -242,9 +240,50 @@ impl Problem {
     }
 }
 
+impl SurfaceSeal {
+    /// The seal between the last state with a flow and the first without.
+    fn new(seed: Option<u64>, axis: &str, ends: [Option<State>; 2]) -> Self {
+        let of = |value: fn(State) -> f64| ends.map(|end| end.map(value));
+        let bracket = of(|state| state.pressure);
+        let pressure = bracket[0].zip(bracket[1]).map(|(leaks, seals)| 0.5 * (leaks + seals));
+        Self { seed, axis: axis.to_owned(), pressure, bracket, area_fraction: of(|state| state.area) }
+    }
+
+    /// Pressure, bracket and contact area along the axis.
+    fn words(&self) -> String {
+        let pressure = |value: f64| engineering(value, "Pa");
+        let percent = |area: f64| digits(100.0 * area, 3);
+        let text = match (self.pressure, self.bracket) {
+            (Some(found), [Some(leaks), Some(seals)]) => {
+                let area = match self.area_fraction {
+                    [Some(low), Some(high)] => format!(", contact area {} to {} %", percent(low), percent(high)),
+                    _ => String::new(),
+                };
+                format!("{} ({} to {}{area})", pressure(found), pressure(leaks), pressure(seals))
+            }
+            (_, [Some(leaks), _]) => format!("above {}", pressure(leaks)),
+            (_, [None, Some(seals)]) => format!("below {}", pressure(seals)),
+            (_, [None, None]) => "unknown".to_owned(),
+        };
+        format!("{text} along {}", self.axis)
+    }
+}
+
 impl Sealing {
+    /// The sealing pressures in the folder of a sweep; `None` if there are none.
+    ///
+    /// # Errors
+    /// [`CliError::Input`] when the file is no record of them.
+    pub(crate) fn read(folder: &Path) -> Result<Option<Self>, CliError> {
+        let path = folder.join(SEALING_FILE);
+        let Ok(text) = std::fs::read_to_string(&path) else { return Ok(None) };
+        let read = serde_json::from_str(&text);
+        read.map(Some)
+            .map_err(|cause| CliError::in_file(&path, format_args!("not sealing pressures of rc sweep: {cause}")))
+    }
+
     /// A line for each problem.
-    pub(super) fn lines(&self) -> String {
+    pub(crate) fn lines(&self) -> String {
         self.problems.iter().map(Problem::line).collect()
     }
 }
