@@ -204,13 +204,6 @@ fn as_given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<
     Option::deserialize(deserializer).map(Some)
 }
 
-impl SolveContext {
-    /// A conductance (1/m) times the conductivity, if there is one.
-    fn of_bodies(&self, per_unit: Option<f64>) -> Option<Option<f64>> {
-        self.conductivity.map(|conductivity| per_unit.map(|value| value * conductivity))
-    }
-}
-
 /// Conductance for unit conductivity and its error (1/m). There is none in full contact.
 fn conductance(solution: &Solution<'_>, units: Units) -> [Option<f64>; 2] {
     // A conductance in 1/λ is a stiffness in E*/λ per E*.
@@ -258,8 +251,8 @@ impl Summary {
             contact_stiffness: Some(units.pascals_per_metre(solution.stiffness())).filter(|value| value.is_finite()),
             contact_conductance: conductance,
             contact_conductance_error: error_of_conductance,
-            conductance: context.of_bodies(conductance),
-            conductance_error: context.of_bodies(error_of_conductance),
+            conductance: context.conductivity.map(|factor| conductance.map(|value| value * factor)),
+            conductance_error: context.conductivity.map(|factor| error_of_conductance.map(|error| error * factor)),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,

@@ -92,6 +92,12 @@ impl ResultFolder {
         [self.side, self.side * self.pressure.grid().cell_ratio()]
     }
 
+    /// Whether it is the line contact of a profile, which has one row.
+    #[must_use]
+    pub fn is_line(&self) -> bool {
+        self.summary.grid[1] == 1
+    }
+
     /// Whether the fields have one value for each element.
     ///
     /// Otherwise they are means over blocks of elements (`output_grid`).

@@ -185,6 +185,11 @@ impl ProfileRecord {
         let missing = heights.iter().filter(|height| height.is_nan()).count();
         let whole = without_holes(heights);
         let (kept, sections) = roughness(&whole, *spacing, [args.lambda_s, args.lambda_c])?;
+        let filtered = match (args.lambda_s, args.lambda_c) {
+            (_, Some(_)) => ProfileParameters::about(0.0, &kept, sections),
+            (Some(_), None) => ProfileParameters::of(&kept),
+            (None, None) => ProfileParameters::of(heights),
+        };
         let steps = whole.windows(2).map(|pair| ((pair[1] - pair[0]) / spacing).powi(2));
         let measured = || heights.iter().copied().filter(|height| !height.is_nan());
         let [h_min, h_max] = [measured().fold(f64::INFINITY, f64::min), measured().fold(f64::NEG_INFINITY, f64::max)];
@@ -220,12 +225,8 @@ impl ProfileRecord {
             lambda_c: args.lambda_c,
             evaluation_length: kept.len() as f64 * spacing,
             sections,
-            filtered: ProfileParameters::of(
-                if args.lambda_s.or(args.lambda_c).is_some() { &kept } else { heights },
-                sections,
-            )
-            .into(),
-            unfiltered: ProfileParameters::of(heights, 1).into(),
+            filtered: filtered.into(),
+            unfiltered: ProfileParameters::of(heights).into(),
             spectrum: spectra_of_profile(&whole, *spacing).iter().map(row).collect(),
             notes,
             warnings,
@@ -268,7 +269,10 @@ impl ProfileRecord {
         }
         let note = "\nP: the whole profile about its mean, without a filter (ISO 21920-2). ";
         let more = match self.filters() {
-            Some(_) => "R: after the filters; Rp, Rv and Rz are means over the sections.\n",
+            Some(_) if self.lambda_c.is_some() => {
+                "R: after the filters, above the mean line of λc; Rp, Rv and Rz are means over the sections.\n"
+            }
+            Some(_) => "R: after the filter, about the mean.\n",
             None => "Give --lambda-c (and --lambda-s) for the R parameters of the filtered profile.\n",
         };
         aligned(&lines)

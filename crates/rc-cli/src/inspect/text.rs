@@ -52,7 +52,7 @@ pub(crate) fn heights(s: &SurfaceRecord) -> String {
 /// Names and values of the statistics of a surface.
 pub(crate) fn surface_lines(s: &SurfaceRecord) -> Vec<(&'static str, String)> {
     let lines = [
-        ("cell", format!("{} with {} x {} elements", cell([s.cell, s.cell_y]), s.grid[0], s.grid[1])),
+        ("cell", cell_line(s)),
         ("missing", missing(s)),
         (
             "heights",
@@ -70,6 +70,14 @@ pub(crate) fn surface_lines(s: &SurfaceRecord) -> Vec<(&'static str, String)> {
         ("skewness, kurtosis", format!("{}, {}", digits(s.skewness, 3), digits(s.kurtosis, 4))),
     ];
     lines.into_iter().filter(|(name, _)| *name != "missing" || s.missing > 0).collect()
+}
+
+/// Text of the cell with its elements. A profile has one row.
+fn cell_line(s: &SurfaceRecord) -> String {
+    match s.grid {
+        [nx, 1] => format!("a profile of {} with {nx} elements", engineering(s.cell, "m")),
+        [nx, ny] => format!("{} with {nx} x {ny} elements", cell([s.cell, s.cell_y])),
+    }
 }
 
 /// Text of the number of missing points.

@@ -238,9 +238,7 @@ fn command(args: &StudyArgs) -> String {
 
 /// Refuses a map that was made periodic before, which would be mirrored or faded twice.
 fn check_once(path: &Path, source: &MapOrigin) -> Result<(), CliError> {
-    let is_periodic =
-        |step: &&String| ["periodic mirror", "periodic window", "repeat"].iter().any(|start| step.starts_with(start));
-    let Some(step) = source.treatments.iter().find(is_periodic) else { return Ok(()) };
+    let Some(step) = source.periodic_step() else { return Ok(()) };
     Err(CliError::in_file(
         path,
         format_args!(
