@@ -73,7 +73,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
         subtitle: format!(
             "{} on {}, at prescribed {}s",
             count(rows.len(), "row"),
-            count(table.surfaces().len(), "surface"),
+            count(table.surfaces().len(), if is_varied(rows) { "problem" } else { "surface" }),
             rows[0].control
         ),
         status,
@@ -86,6 +86,11 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
         kind: "sweep",
         body: body(folder, &table)?,
     })
+}
+
+/// Whether keys of the scenes were varied, of which some change the surface and others the contact.
+fn is_varied(rows: &[Row]) -> bool {
+    rows.iter().any(|row| row.label != row.scene)
 }
 
 /// One line for each code of a warning, with the number of its rows.
@@ -173,7 +178,7 @@ fn body(folder: &Path, table: &SweepTable) -> Result<Curves, CliError> {
         Some(sealing) => sealing.lines().lines().map(sentence).collect(),
         None => percolation::note(flows.collect()).into_iter().collect(),
     };
-    let name = if table.rows.iter().any(|row| row.label != row.scene) { "variation" } else { "scene" };
+    let name = if is_varied(&table.rows) { "variation" } else { "scene" };
     let mut heads = if several { vec![name] } else { Vec::new() };
     heads.extend(["seed", "mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness"]);
     heads.extend(MORE.into_iter().filter(|column| column.is_in(&table.rows)).map(|column| column.head));
