@@ -9,10 +9,10 @@ use serde_json::{Value, json};
 
 use super::columns::{PRESSURE, QUANTITIES, Quantity, bar_of, is_result, number, unit_of};
 use super::means::{AtLoad, Mean};
+use super::sealing::Sealing;
 use super::table::{Row, SweepTable};
 use crate::error::CliError;
 use crate::study::record::words;
-use crate::sweep::sealing::Sealing;
 
 /// File of the means in the folder of `--out`.
 const MEANS_FILE: &str = "means.csv";

@@ -6,15 +6,11 @@ use rc_sweep::files::{self, Staged};
 use rc_sweep::settings_in;
 
 use super::flow;
-use super::names::{HEIGHTS_FILE, PREPARE_FILE, RECORD_FILE, SCENE_FILE, SUMMARY_FILE};
-use super::result::PLASTIC_GAP_FILE;
-use crate::compare::command as compare;
+use super::names::{
+    COMPARISON_FILE, DIFFERENCE_FILE, GROUP, HEIGHTS_FILE, PAGE_FILE, PLASTIC_GAP_FILE, PREPARE_FILE, RECORD_FILE,
+    SCENE_FILE, STUDY_FILE, SUMMARY_FILE, WATCH_FILE, WAVES_FILE,
+};
 use crate::error::CliError;
-use crate::export::xarray;
-use crate::report::PAGE_FILE;
-use crate::run::watch;
-use crate::scene::wave_file::WAVES_FILE;
-use crate::study::record::STUDY_FILE;
 
 /// The kinds of folders that commands fill.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,16 +55,16 @@ const OF_RESULT: [&str; 19] = [
     flow::PICTURE_FILE,
     flow::FLUX_FILES[0],
     flow::FLUX_FILES[1],
-    watch::PICTURE,
-    xarray::GROUP,
+    WATCH_FILE,
+    GROUP,
     "touched.png",
     "gap.png",
     "sections.png",
     "sections.svg",
     "fields.vti",
     "elements.vtu",
-    compare::RECORD_FILE,
-    compare::PICTURE_FILE,
+    COMPARISON_FILE,
+    DIFFERENCE_FILE,
 ];
 
 impl Kind {

@@ -5,15 +5,12 @@ use std::path::Path;
 use rc_core::{Field, Grid, PeriodicCell};
 
 use crate::error::CliError;
-use crate::files::names::SUMMARY_FILE;
+use crate::files::names::{PLASTIC_GAP_FILE, SUMMARY_FILE};
 use crate::scene::file;
 use crate::scene::heights::check_finite;
 use crate::scene::resolve;
 use rc_heights::npy;
 use rc_sweep::Summary;
-
-/// File of the overlap that plastic flow has removed, with a hardness.
-pub const PLASTIC_GAP_FILE: &str = "plastic_gap.npy";
 
 /// A folder that `rc solve --out` has written.
 #[derive(Clone, Debug)]

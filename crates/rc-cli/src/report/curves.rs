@@ -11,11 +11,11 @@ use super::page::{Page, Text, Tile, made};
 use super::{percolation, sweep_command};
 use crate::curves::columns::{PRESSURE, QUANTITIES, Quantity, bar_of};
 use crate::curves::means::{AtLoad, Mean};
+use crate::curves::sealing::Sealing;
 use crate::curves::table::{Row, SweepTable};
 use crate::curves::text::cell;
 use crate::curves::theory::{PerssonLine, persson};
 use crate::error::CliError;
-use crate::sweep::sealing::Sealing;
 use rc_core::quantity::{Scale, count, digits, engineering};
 use rc_sweep::WarningCode;
 

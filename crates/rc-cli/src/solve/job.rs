@@ -10,8 +10,9 @@ use super::checked::CheckedScene;
 use super::dry_run;
 use super::solved::Solved;
 use crate::error::CliError;
-use crate::export::{xarray, zarr};
+use crate::export::zarr;
 use crate::files::kind::Kind;
+use crate::files::names::GROUP;
 use crate::run::progress::Progress;
 use crate::run::stop::{Reason, Stop};
 use crate::run::threads;
@@ -75,7 +76,7 @@ impl Job {
         if self.scene.contact.keys.output_grid.is_some() {
             return Err(CliError::input("output_grid: the group of --zarr has the whole grid; omit one of the two"));
         }
-        zarr::check_place(&folder.join(xarray::GROUP))?;
+        zarr::check_place(&folder.join(GROUP))?;
         Ok(Self { zarr: true, ..self })
     }
 

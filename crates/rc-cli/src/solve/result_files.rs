@@ -16,10 +16,8 @@ use super::leakage::SolvedFlow;
 use super::map_file::MapFile;
 use super::{flow_files, shared_fields};
 use crate::error::CliError;
-use crate::export::xarray;
 use crate::files::kind::Kind;
-use crate::files::names::{HEIGHTS_FILE, SCENE_FILE, SUMMARY_FILE};
-use crate::files::result::PLASTIC_GAP_FILE;
+use crate::files::names::{GROUP, HEIGHTS_FILE, PLASTIC_GAP_FILE, SCENE_FILE, SUMMARY_FILE};
 use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
@@ -127,7 +125,7 @@ impl ResultFiles<'_> {
             return shared_fields::write(None, self.solution, units);
         }
         let mut staged = Kind::Result.stage(folder)?;
-        staged.add(xarray::GROUP, |path| shared_fields::write(Some(path), self.solution, units))?;
+        staged.add(GROUP, |path| shared_fields::write(Some(path), self.solution, units))?;
         Ok(self.finish(staged, summary)?)
     }
 

@@ -11,9 +11,7 @@ use super::ranges::{LoadRanges, Range};
 use super::rows::{SAME_AS, STEP, TREATMENT};
 use super::variants::Variant;
 use crate::error::CliError;
-
-/// File of the record in the folder of a study.
-pub(crate) const STUDY_FILE: &str = "study.json";
+use crate::files::names::STUDY_FILE;
 
 /// A study with all its rows.
 #[derive(Clone, Debug, Serialize, Deserialize)]
