@@ -7,8 +7,8 @@ use rc_sweep::settings_in;
 
 use super::flow;
 use super::names::{
-    COMPARISON_FILE, DIFFERENCE_FILE, GROUP, HEIGHTS_FILE, PAGE_FILE, PLASTIC_GAP_FILE, PREPARE_FILE, RECORD_FILE,
-    SCENE_FILE, STUDY_FILE, SUMMARY_FILE, WATCH_FILE, WAVES_FILE,
+    COMPARISON_FILE, DIFFERENCE_FILE, GROUP, HEIGHTS_FILE, PAGE_FILE, PLASTIC_GAP_FILE, PREPARE_FILE, PSD_FILE,
+    RECORD_FILE, SCENE_FILE, STUDY_FILE, SUMMARY_FILE, WATCH_FILE, WAVES_FILE,
 };
 use crate::error::CliError;
 
@@ -26,9 +26,10 @@ pub enum Kind {
 }
 
 /// Files of the surface in a result or a prepared folder, with the pictures of `rc plot` and `rc inspect`.
-const OF_SURFACE: [&str; 12] = [
+const OF_SURFACE: [&str; 13] = [
     HEIGHTS_FILE,
     WAVES_FILE,
+    PSD_FILE,
     RECORD_FILE,
     SCENE_FILE,
     PAGE_FILE,
