@@ -259,6 +259,11 @@ class Result:
         """Conductance per nominal area (S/m² or W/(m² K)). None without ``conductivity`` and in full contact."""
         return self.summary.get("conductance")
 
+    @property
+    def conductance_error(self) -> float | None:
+        """Estimated error of ``conductance``, in its unit."""
+        return self.summary.get("conductance_error")
+
     @cached_property
     def displacement(self) -> Floats:
         """Displacement v of the elastic surface (m), shape (ny, nx), positive away from the rough surface, read-only.

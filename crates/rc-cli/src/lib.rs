@@ -47,7 +47,7 @@ mod terminal;
 mod text;
 pub mod warnings;
 
-pub use files::{checkpoint, result};
+pub use files::{checkpoint, kind, result};
 
 use args::{Cli, Command};
 use error::CliError;

@@ -83,10 +83,10 @@ pub(crate) fn plastic(s: &Summary) -> Option<String> {
 fn conductance(s: &Summary) -> String {
     let Some(value) = s.contact_conductance else { return "infinite".into() };
     let error = s.contact_conductance_error.map_or_else(String::new, |error| format!(" ± {}", digits(error, 1)));
-    let of_bodies = s
-        .conductance
-        .flatten()
-        .map_or_else(String::new, |value| format!(", here {} (unit of the conductivity per m)", digits(value, 4)));
+    let of_bodies = s.conductance.flatten().map_or_else(String::new, |value| {
+        let error = s.conductance_error.flatten().map_or_else(String::new, |error| format!(" ± {}", digits(error, 1)));
+        format!(", here ({}{error}) W/(m² K), or S/m² for electrical conductivities", digits(value, 4))
+    });
     format!("({}{error}) 1/m times the conductivity{of_bodies}", digits(value, 4))
 }
 

@@ -103,11 +103,14 @@ pub struct Summary {
     pub contact_conductance: Option<f64>,
     /// Estimated error of `contact_conductance` (1/m).
     pub contact_conductance_error: Option<f64>,
-    /// Conductance of the nominal area for the given conductivities, in their unit per metre.
+    /// Conductance per nominal area for the given conductivities (W/(m² K) for thermal ones, S/m² for electrical ones).
     ///
     /// It exists only with conductivities, and is null in full contact.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
     pub conductance: Option<Option<f64>>,
+    /// Estimated error of `conductance`, in its unit.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
+    pub conductance_error: Option<Option<f64>>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
     /// rms height about the mean (m).
@@ -269,6 +272,7 @@ impl Summary {
             contact_conductance: of_spots,
             contact_conductance_error: error_of_spots,
             conductance: context.conductivity.map(|of_bodies| of_spots.map(|per_unit| per_unit * of_bodies)),
+            conductance_error: context.conductivity.map(|of_bodies| error_of_spots.map(|error| error * of_bodies)),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,

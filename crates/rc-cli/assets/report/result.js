@@ -48,6 +48,25 @@ function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElement
   ];
 }
 
+/** Pressure and gap of the contact of a profile, with both bodies. */
+function lineCharts({ sides, pressure, gap, peak, averaged }, surface) {
+  const fields = { pressure: new EmbeddedField(pressure), gap: new EmbeddedField(gap) };
+  if (surface) fields.heights = new EmbeddedField(surface.heights);
+  const view = new SharedView(peak, Math.min(1, 8 / pressure.nx));
+  const sections = sectionCharts(fields, view, sides);
+  const controls = make("div", { class: "controls" },
+    make("button", { onclick: () => view.zoom(0.5) }, "zoom in on the maximum pressure"), make("button", { onclick: () => view.zoom(2) }, "zoom out"),
+    make("button", { onclick: () => view.reset() }, "whole cell"));
+  return [
+    make("h2", {}, "Pressure and gap along the profile"),
+    make("div", { class: "columns wide" }, sections.pressure.element, sections.gap.element),
+    controls,
+    make("p", { class: "quiet" }, averaged),
+    ...(surface && surface.sections.length > 0 ? [bodyOfLine(surface.sections[0], sides[0])] : []),
+    ...(surface ? surfaceParts(surface, fields.heights) : []),
+  ];
+}
+
 /** Pressure and gap along a line through the cursor, over the visible part of the cell. */
 function sectionCharts(fields, view, sides) {
   const charts = { axis: "x" };
@@ -95,10 +114,10 @@ function stressDistribution({ values: stress, density, fit, notes }) {
 }
 
 /** Contact spots by size. */
-function contactSpots({ rows, diameters, counts, note }) {
+function contactSpots({ rows, diameters, counts, size, note }) {
   const steps = diameters.map((edge, i) => [edge, i < counts.length ? counts[i] : 0]);
   const chart = new Chart({
-    x: { label: "diameter of a circle of the same area", unit: "m", log: true, from: diameters[0], to: diameters[diameters.length - 1] },
+    x: { label: size, unit: "m", log: true, from: diameters[0], to: diameters[diameters.length - 1] },
     y: { label: "spots", from: 0 },
     series: [{ name: "", points: [[diameters[0], 0], ...steps], colour: "var(--blue)", kind: "steps" }],
   });
@@ -121,7 +140,7 @@ function resultPage(data) {
   const half = (...children) => make("div", { class: "columns wide" }, ...children);
   return [
     ...(data.kappa ? [make("p", {}, data.kappa)] : []),
-    ...mapsAndSections(data.maps, data.surface),
+    ...(data.maps.line ? lineCharts : mapsAndSections)(data.maps, data.surface),
     ...(data.no_surface ? [make("p", { class: "quiet" }, `The surface is not shown: ${data.no_surface}`)] : []),
     half(...[data.stress && stressDistribution(data.stress), data.spots && contactSpots(data.spots)].filter(Boolean)),
     ...[data.leakage && half(leakagePicture(data.leakage))].filter(Boolean),

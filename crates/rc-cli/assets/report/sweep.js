@@ -45,7 +45,7 @@ function sweepCharts(data) {
   const gap = { key: "gap", label: "mean gap", unit: "m" };
   const stiffness = { key: "stiffness", label: "stiffness", unit: "Pa/m", log: true };
   const conductance = { key: "conductance", label: "conductance per conductivity (1/m)", log: true };
-  const ofBodies = { key: "of_bodies", label: "conductance (unit of the conductivity per m)", log: true };
+  const ofBodies = { key: "of_bodies", label: "conductance (W/(m² K) or S/m²)", log: true };
   const permeance = { key: "permeance", label: "permeance (m³), mean of x and y", log: true };
   const logPressure = { ...pressure, log: true };
   const has = ({ key }) => data.scenes.some(({ seeds }) => seeds.some((rows) => rows.some((row) => key in row)));
@@ -137,7 +137,7 @@ function sweepPage(data) {
   return [
     make("h2", {}, "Curves"),
     make("div", { class: "columns wide" }, ...sweepCharts(data)),
-    ...(data.percolation ? [make("p", {}, data.percolation)] : []),
+    ...data.sealing.map((line) => make("p", {}, line)),
     make("p", { class: "quiet" }, data.note),
     make("h2", {}, "Contact under each load"),
     ...(data.frames ? sweepFrames(data.frames) : []),

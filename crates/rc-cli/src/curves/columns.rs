@@ -29,7 +29,7 @@ const BOOKKEEPING: [&str; 21] = [
 ];
 
 /// Units of columns; others have none.
-const UNITS: [(&str, &str); 19] = [
+const UNITS: [(&str, &str); 21] = [
     ("mean_pressure", "Pa"),
     ("rms_pressure", "Pa"),
     ("rms_pressure_corrected", "Pa"),
@@ -49,6 +49,8 @@ const UNITS: [(&str, &str); 19] = [
     ("elastic_energy", "J"),
     ("permeance_x", "m³"),
     ("permeance_y", "m³"),
+    ("flow_x", "m³/s"),
+    ("flow_y", "m³/s"),
 ];
 
 /// A quantity that is drawn against the pressure.
@@ -69,7 +71,7 @@ pub(crate) const PRESSURE: Quantity =
     Quantity { name: "pressure", keys: &["mean_pressure"], words: "mean pressure", unit: "Pa" };
 
 /// The quantities that are drawn.
-pub(crate) const QUANTITIES: [Quantity; 7] = [
+pub(crate) const QUANTITIES: [Quantity; 8] = [
     Quantity { name: "area", keys: &["area_fraction"], words: "contact area A/A0", unit: "" },
     Quantity { name: "gap", keys: &["mean_gap"], words: "mean gap", unit: "m" },
     Quantity { name: "penetration", keys: &["penetration"], words: "penetration", unit: "m" },
@@ -80,18 +82,14 @@ pub(crate) const QUANTITIES: [Quantity; 7] = [
         words: "conductance per conductivity",
         unit: "1/m",
     },
-    Quantity {
-        name: "of_bodies",
-        keys: &["conductance"],
-        words: "conductance, unit of the conductivity per m",
-        unit: "",
-    },
+    Quantity { name: "of_bodies", keys: &["conductance"], words: "conductance in W/(m² K) or S/m²", unit: "" },
     Quantity {
         name: "permeance",
         keys: &["permeance_x", "permeance_y"],
         words: "permeance, mean of x and y",
         unit: "m³",
     },
+    Quantity { name: "flow", keys: &["flow_x", "flow_y"], words: "flow, mean of x and y", unit: "m³/s" },
 ];
 
 impl Quantity {
@@ -127,18 +125,12 @@ pub(crate) fn bar_of(cells: &Cells, key: &str) -> Option<f64> {
         "penetration" => "penetration_error_bar".to_owned(),
         "rms_pressure_corrected" => "rms_pressure_error".to_owned(),
         "rms_pressure" => return None,
-        "conductance" => return bar_of_bodies(cells),
         "permeance_x" | "permeance_y" => key.replace("permeance", "permeance_error"),
+        "flow_x" | "flow_y" => key.replace("flow", "flow_error"),
         _ if cells.contains_key(&format!("{key}_error_bar")) => format!("{key}_error_bar"),
         _ => format!("{key}_error"),
     };
     number(cells, &bar)
-}
-
-/// The conductance of the bodies has the relative error of that for unit conductivity.
-fn bar_of_bodies(cells: &Cells) -> Option<f64> {
-    let relative = bar_of(cells, "contact_conductance")? / number(cells, "contact_conductance")?;
-    Some(relative * number(cells, "conductance")?).filter(|bar| bar.is_finite())
 }
 
 /// SI unit of a column.
@@ -158,6 +150,7 @@ mod tests {
             "area_fraction": 0.1, "area_fraction_error": 0.01, "penetration": 2.0, "penetration_error": 9.0,
             "penetration_error_bar": 0.5, "permeance_x": 1.0, "permeance_y": 3.0, "permeance_error_x": 0.1,
             "permeance_error_y": 0.3, "contact_conductance": 4.0, "contact_conductance_error": 1.0, "conductance": 8.0,
+            "conductance_error": 2.0,
             "contact_stiffness": null, "wall_seconds": 1.0,
         });
         let cells: Cells = cells.as_object().expect("an object").clone();

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::columns::{PRESSURE, QUANTITIES, Quantity, bar_of, is_result, number, unit_of};
 use super::means::{AtLoad, Mean};
+use super::sealing::Sealing;
 use super::table::{Row, SweepTable};
 use crate::error::CliError;
 use crate::study::record::{words, words_with_error};
@@ -23,6 +24,7 @@ const MEANS_FILE: &str = "means.csv";
 pub(crate) fn of_sweep(folder: &Path, json: bool, out: Option<&Path>) -> Result<String, CliError> {
     let table = SweepTable::read(folder)?;
     let records = records(&table);
+    let sealing = Sealing::read(folder)?;
     let mut written = String::new();
     if let Some(out) = out {
         files::check_folder(out)?;
@@ -31,9 +33,14 @@ pub(crate) fn of_sweep(folder: &Path, json: bool, out: Option<&Path>) -> Result<
         written = format!("\nwritten to {}\n", path.display());
     }
     if json {
-        return Ok(to_json(&json!({ "control": table.rows[0].control, "means": records })));
+        let mut record = json!({ "control": table.rows[0].control, "means": records });
+        if let Some(sealing) = &sealing {
+            record["sealing"] = json!(sealing);
+        }
+        return Ok(to_json(&record));
     }
-    Ok(table.scenes().into_iter().map(scene).collect::<String>() + &written)
+    let sealing = sealing.map_or_else(String::new, |sealing| sealing.lines());
+    Ok(table.scenes().into_iter().map(scene).collect::<String>() + &sealing + &written)
 }
 
 /// The means of all numbers that are results, a record for each scene and load, with the columns of `means.csv`.
@@ -83,7 +90,7 @@ fn scene(rows: &[Row]) -> String {
     let others = shown.iter().filter(|quantity| quantity.key() != control);
     let others: Vec<&Quantity> =
         (control != PRESSURE.key()).then_some(&PRESSURE).into_iter().chain(others.copied()).collect();
-    lines[0].extend(others.iter().map(|quantity| head(quantity).to_owned()));
+    lines[0].extend(others.iter().map(|quantity| quantity.words.to_owned()));
     for at in &loads {
         let mut line = vec![engineering(at.load, unit), at.rows.len().to_string()];
         line.extend(
@@ -93,10 +100,6 @@ fn scene(rows: &[Row]) -> String {
     }
     let label = if rows[0].label.is_empty() { String::new() } else { format!("{}\n", rows[0].label) };
     label + &aligned(&lines) + "\n"
-}
-
-fn head(quantity: &Quantity) -> &'static str {
-    quantity.words.split(',').next().unwrap_or_default()
 }
 
 /// A mean with its standard error, such as `15.10 ± 0.20 µm`.

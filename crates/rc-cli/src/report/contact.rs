@@ -58,6 +58,8 @@ struct Maps {
     gap: EmbeddedField,
     /// Fraction of each pixel in contact, or fraction of its stored means that are above 0.
     contact: EmbeddedField,
+    /// Whether the contact is that of a profile.
+    line: bool,
     /// Whether the fields have one value for each element.
     of_elements: bool,
     /// Place of the maximum pressure, in fractions of the cell.
@@ -138,6 +140,7 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
     let surface = match (keys.file(), keys.waves, keys.hurst, keys.seed) {
         (Some(("spectrum", _)), ..) => "a surface of given waves".to_owned(),
         (Some(("psd", _)), _, _, Some(seed)) => format!("a surface of a tabulated spectrum, seed {seed}"),
+        (Some(_), ..) if result.is_line() => "a profile".to_owned(),
         (Some(_), ..) => "a height map".to_owned(),
         (None, None, ..) if keys.is_shape() => "a shape".to_owned(),
         (None, Some(waves), Some(hurst), Some(seed)) => format!("{waves} waves, H = {hurst}, seed {seed}"),
@@ -147,16 +150,18 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
     let place = match (scene.contact.boundary, scene.contact.layer_thickness) {
         (Some(Boundary::Free), _) => "on a free patch of".to_owned(),
         (_, Some(thickness)) => format!("on a layer of {}, in a cell of", engineering(thickness, "m")),
+        _ if result.is_line() => "periodic with".to_owned(),
         _ => "in a cell of".to_owned(),
     };
+    let [nx, ny] = s.grid;
+    let elements =
+        if result.is_line() { format!("{nx} elements, line contact") } else { format!("{nx} x {ny} elements") };
     format!(
-        "{surface}: rms height {}, rms slope {}, {place} {}; E* = {}; {} x {} elements, kernel {}, method {}",
+        "{surface}: rms height {}, rms slope {}, {place} {}; E* = {}; {elements}, kernel {}, method {}",
         engineering(s.rms_height, "m"),
         digits(s.rms_slope, 4),
         text::cell(result.sides()),
         engineering(result.e_star, "Pa"),
-        s.grid[0],
-        s.grid[1],
         s.kernel,
         s.method
     )
@@ -207,7 +212,9 @@ fn maps(result: &ResultFolder) -> Maps {
     let widest = Some(gaps.max()).filter(|gap| *gap > ROUNDING * summary.penetration_full_contact).unwrap_or(0.0);
     let what = if of_elements { "element" } else { "stored value" };
     let pixel = if grid == pixels {
-        format!("Every {what} is a pixel.")
+        format!("Every {what} is a {}.", if grid.ny() > 1 { "pixel" } else { "point" })
+    } else if grid.ny() == 1 {
+        format!("The curves have {} points, each a mean over a block of the {} {what}s.", pixels.nx(), grid.nx())
     } else {
         format!(
             "The maps have at most {MOST_PIXELS} x {MOST_PIXELS} pixels. Each pixel is a mean over a block of the {grid} {what}s."
@@ -225,6 +232,7 @@ fn maps(result: &ResultFolder) -> Maps {
     };
     Maps {
         sides: result.sides(),
+        line: grid.ny() == 1,
         pressure: EmbeddedField::of_contact(&pressures, pressures.max(), Bits::Sixteen, Palette::Heat),
         gap: EmbeddedField::of_gap(&gaps, widest, Bits::Sixteen, Palette::Viridis),
         contact: EmbeddedField::of_contact(&contact, 1.0, Bits::Eight, Palette::Ink),

@@ -9,8 +9,9 @@ use serde_json::Value;
 use super::frames::Frames;
 use super::page::{Page, Text, Tile, made};
 use super::{percolation, sweep_command};
-use crate::curves::columns::{PRESSURE, QUANTITIES, Quantity};
+use crate::curves::columns::{PRESSURE, QUANTITIES, Quantity, bar_of};
 use crate::curves::means::{AtLoad, Mean};
+use crate::curves::sealing::Sealing;
 use crate::curves::table::{Row, SweepTable};
 use crate::curves::text::cell;
 use crate::curves::theory::{PerssonLine, persson};
@@ -33,8 +34,8 @@ pub(super) struct Curves {
     heads: Vec<&'static str>,
     rows: Vec<Vec<String>>,
     note: String,
-    /// Sentence about the end of percolation, for a sweep with flows.
-    percolation: Option<String>,
+    /// Sentences about the pressures or areas at which the film closes, for a sweep with flows.
+    sealing: Vec<String>,
 }
 
 /// A table of text.
@@ -73,7 +74,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
         subtitle: format!(
             "{} on {}, at prescribed {}s",
             count(rows.len(), "row"),
-            count(table.surfaces().len(), "surface"),
+            count(table.surfaces().len(), if is_varied(rows) { "problem" } else { "surface" }),
             rows[0].control
         ),
         status,
@@ -84,8 +85,13 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
         files,
         made: made(),
         kind: "sweep",
-        body: body(&table)?,
+        body: body(folder, &table)?,
     })
+}
+
+/// Whether keys of the scenes were varied, of which some change the surface and others the contact.
+fn is_varied(rows: &[Row]) -> bool {
+    rows.iter().any(|row| row.label != row.scene)
 }
 
 /// One line for each code of a warning, with the number of its rows.
@@ -161,7 +167,7 @@ fn tiles(rows: &[Row]) -> Vec<Tile> {
     ]
 }
 
-fn body(table: &SweepTable) -> Result<Curves, CliError> {
+fn body(folder: &Path, table: &SweepTable) -> Result<Curves, CliError> {
     let (frames, frames_note) = Frames::of(table)?;
     let scenes: Vec<SceneCurves> = table.scenes().into_iter().map(SceneCurves::of).collect();
     let several = scenes.len() > 1;
@@ -169,22 +175,35 @@ fn body(table: &SweepTable) -> Result<Curves, CliError> {
         let key = (row.scene.clone(), row.seed);
         Some((key, row.number("area_fraction")?, [row.number("permeance_x")?, row.number("permeance_y")?]))
     });
-    let name = if table.rows.iter().any(|row| row.label != row.scene) { "variation" } else { "scene" };
+    let sealing = match Sealing::read(folder)? {
+        Some(sealing) => sealing.lines().lines().map(sentence).collect(),
+        None => percolation::note(flows.collect()).into_iter().collect(),
+    };
+    let name = if is_varied(&table.rows) { "variation" } else { "scene" };
     let mut heads = if several { vec![name] } else { Vec::new() };
-    heads.extend(["seed", "mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness", "status"]);
+    heads.extend(["seed", "mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness"]);
+    heads.extend(MORE.into_iter().filter(|column| column.is_in(&table.rows)).map(|column| column.head));
+    heads.push("status");
     let persson = persson(table);
     Ok(Curves {
-        percolation: percolation::note(flows.collect()),
+        sealing,
         geometric: table.is_geometric(),
         means: means(table, name),
         heads,
-        rows: table.rows.iter().map(|row| cells(row, several)).collect(),
+        rows: table.rows.iter().map(|row| cells(row, several, &table.rows)).collect(),
         note: note(&scenes, !persson.is_empty()),
         scenes,
         persson,
         frames,
         frames_note,
     })
+}
+
+/// A line of the command as a sentence.
+fn sentence(line: &str) -> String {
+    let mut letters = line.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    format!("{}{}.", first.unwrap_or_default(), letters.as_str())
 }
 
 fn note(scenes: &[SceneCurves], has_theory: bool) -> String {
@@ -239,7 +258,7 @@ fn means(table: &SweepTable, name: &'static str) -> Option<Table> {
 }
 
 /// The cells of a row.
-fn cells(row: &Row, several: bool) -> Vec<String> {
+fn cells(row: &Row, several: bool, all: &[Row]) -> Vec<String> {
     let of = |key: &str, unit| row.number(key).map_or_else(|| "–".to_owned(), |value| engineering(value, unit));
     let [area, error] = ["area_fraction", "area_fraction_error"].map(|key| 100.0 * row.number(key).unwrap_or(0.0));
     let mut cells = if several { vec![row.label.clone()] } else { Vec::new() };
@@ -250,7 +269,35 @@ fn cells(row: &Row, several: bool) -> Vec<String> {
         text::with_error(area, error),
         of("mean_gap", "m"),
         row.number("contact_stiffness").map_or_else(|| "infinite".to_owned(), |value| engineering(value, "Pa/m")),
-        row.status.replace('_', " "),
     ]);
+    cells.extend(MORE.iter().filter(|column| column.is_in(all)).map(|column| column.cell(row)));
+    cells.push(row.status.replace('_', " "));
     cells
+}
+
+/// A column of the table that only some sweeps have.
+struct Column {
+    head: &'static str,
+    key: &'static str,
+}
+
+const MORE: [Column; 5] = [
+    Column { head: "conductance (W/(m² K) or S/m²)", key: "conductance" },
+    Column { head: "permeance along x (m³)", key: "permeance_x" },
+    Column { head: "permeance along y (m³)", key: "permeance_y" },
+    Column { head: "flow along x (m³/s)", key: "flow_x" },
+    Column { head: "flow along y (m³/s)", key: "flow_y" },
+];
+
+impl Column {
+    fn is_in(&self, rows: &[Row]) -> bool {
+        rows.iter().any(|row| row.number(self.key).is_some())
+    }
+
+    /// The number with its bar.
+    fn cell(&self, row: &Row) -> String {
+        let Some(value) = row.number(self.key) else { return "–".to_owned() };
+        let bar = bar_of(&row.cells, self.key);
+        bar.map_or_else(|| digits(value, 4), |bar| format!("{} ± {}", digits(value, 4), digits(bar, 1)))
+    }
 }

@@ -21,6 +21,7 @@ use super::realisations::{MeanResults, Realisations};
 use super::results::Results;
 use super::surfaces::{Surfaces, SweptSurface};
 use crate::error::CliError;
+use crate::files::kind::Kind;
 use crate::scene::surface::Source;
 use crate::{terminal, text};
 
@@ -42,6 +43,9 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
     let folder = run.out.clone().ok_or_else(missing)?;
     let (surface, control) = (surfaces.only()?, surfaces.control());
     let plan = plan(surface, control)?;
+    if !args.resume {
+        Kind::Sweep.check_out(&folder)?;
+    }
     refuse_early(&surfaces)?;
     let threads = surfaces.threads;
     let started = Instant::now();

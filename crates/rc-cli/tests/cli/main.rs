@@ -10,6 +10,7 @@ mod leakage;
 mod like;
 mod line;
 mod measured;
+mod out_folder;
 mod over_ranks;
 mod prepare;
 mod rectangles;

@@ -94,15 +94,4 @@ impl Factors<f64> {
             }
         }
     }
-
-    /// Maximum of |Im L|/Re L over all waves, the loss tangent. It is 0 at rest.
-    pub(crate) fn loss_tangent(&self) -> f64 {
-        match self {
-            Self::AtRest(_) => 0.0,
-            Self::Sliding(table) => {
-                let waves = table.values()[1..].iter();
-                waves.map(|value| value.im.abs() / value.re).fold(0.0, f64::max)
-            }
-        }
-    }
 }
