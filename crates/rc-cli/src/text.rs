@@ -47,6 +47,9 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
         ("elastic energy", engineering(s.elastic_energy, "J")),
         ("certificate", certificate_line(s)),
     ];
+    if let Some(friction) = friction(s) {
+        lines.insert(4, ("friction", friction));
+    }
     if let Some(plastic) = plastic(s) {
         lines.insert(4, ("plastic area", plastic));
     }
@@ -76,6 +79,13 @@ pub(crate) fn plastic(s: &Summary) -> Option<String> {
         percent(fraction, error),
         engineering(s.hardness?, "Pa")
     ))
+}
+
+/// Text of the friction; `None` without a speed.
+pub(crate) fn friction(s: &Summary) -> Option<String> {
+    let (value, error, lateral) = (s.friction?, s.friction_error?, s.lateral_friction?);
+    let power = engineering(s.dissipated_power?, "W/m²");
+    Some(format!("{}, lateral {}, dissipates {power}", with_error(value, error), digits(lateral, 2)))
 }
 
 /// Text of the electrical and thermal conductance.

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use rc_core::Units;
-use rc_solver::{ErrorBound, Solution};
+use rc_solver::{ErrorBound, Friction, Solution};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
@@ -105,6 +105,32 @@ pub struct Summary {
     /// It exists only with conductivities, and is null in full contact.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
     pub conductance: Option<Option<f64>>,
+    /// Friction coefficient of a surface that slides: the force against its velocity, relative to the load.
+    ///
+    /// This key and the next seven exist only with a speed. At the speed 0 they are 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<f64>,
+    /// Estimated error of `friction`, of the mesh and the iteration.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_error: Option<f64>,
+    /// Proven bound of the error of `friction` that the iteration leaves on this grid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_bound: Option<f64>,
+    /// Force across the velocity, positive to its left, relative to the load.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lateral_friction: Option<f64>,
+    /// Power that the solid dissipates, per nominal area (W/m²).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dissipated_power: Option<f64>,
+    /// Maximum loss tangent of the waves of the grid at this speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_loss_tangent: Option<f64>,
+    /// Number of directions of GMRES on the finest grid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gmres_iterations: Option<usize>,
+    /// Number of rounds with the storage modulus on the finest grid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub monotone_steps: Option<usize>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
     /// rms height about the mean (m).
@@ -185,6 +211,24 @@ pub struct SolveContext {
     pub threads: usize,
     /// Harmonic mean of the conductivities of the bodies, if they are given.
     pub conductivity: Option<f64>,
+    /// Whether a speed is given, which may be 0.
+    pub slides: bool,
+}
+
+/// The friction of `solution`, which is 0 at rest.
+fn friction(solution: &Solution<'_>) -> Friction {
+    let at_rest = Friction {
+        coefficient: 0.0,
+        error: 0.0,
+        bound: 0.0,
+        of_displacement: 0.0,
+        lateral: 0.0,
+        power: 0.0,
+        max_loss_tangent: 0.0,
+        gmres_iterations: 0,
+        storage_rounds: 0,
+    };
+    solution.info().friction.unwrap_or(at_rest)
 }
 
 /// The tolerance relative to the range of heights, and that of the energy.
@@ -217,6 +261,7 @@ impl Summary {
         let stiffness = units.pascals_per_metre(solution.stiffness());
         let [conductance, error_of_conductance] = conductance(solution, units);
         let [tolerance, energy_tolerance] = tolerances(solution.bound());
+        let friction = context.slides.then(|| friction(solution));
         Self {
             status: solution.status().name().to_owned(),
             control: context.control.key().to_owned(),
@@ -250,6 +295,14 @@ impl Summary {
             contact_conductance: conductance,
             contact_conductance_error: error_of_conductance,
             conductance: context.conductivity.map(|of_bodies| conductance.map(|per_unit| per_unit * of_bodies)),
+            friction: friction.map(|friction| friction.coefficient),
+            friction_error: friction.map(|friction| friction.error),
+            friction_bound: friction.map(|friction| friction.bound),
+            lateral_friction: friction.map(|friction| friction.lateral),
+            dissipated_power: friction.map(|friction| units.metres(units.pascals(friction.power))),
+            max_loss_tangent: friction.map(|friction| friction.max_loss_tangent),
+            gmres_iterations: friction.map(|friction| friction.gmres_iterations),
+            monotone_steps: friction.map(|friction| friction.storage_rounds),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,

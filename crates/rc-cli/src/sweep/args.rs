@@ -42,6 +42,11 @@ pub(crate) struct SweepArgs {
     /// a range, such as layer-thickness=1e-5:1e-3:8.
     #[arg(long, value_name = "KEY=LIST", help_heading = "Sweep")]
     pub(crate) vary: Vec<Variation>,
+    /// Speeds (m/s) of a surface that slides, in the same forms: 1e-6:1e1:20
+    ///
+    /// Short for --vary speed=LIST. A list with commas may begin with 0, the contact at rest.
+    #[arg(long, value_name = "LIST", help_heading = "Sweep", value_parser = Variation::speeds, allow_hyphen_values = true)]
+    pub(crate) speeds: Option<Variation>,
     /// Keep a result folder for each row: rows/0001 and so on
     #[arg(long, help_heading = "Sweep")]
     pub(crate) fields: bool,

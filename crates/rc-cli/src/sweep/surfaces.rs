@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::args::SweepArgs;
 use super::map_mark::MapMark;
-use super::varied::Varied;
+use super::varied::{Variation, Varied};
 use crate::error::CliError;
 use crate::files::names::SCENE_FILE;
 use crate::run::threads;
@@ -315,6 +315,9 @@ fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
         let message = format_args!("{first} and {second} are both given; a sweep has one control, so give exactly one");
         return Err(CliError::input(message));
     }
+    if args.speeds.is_some() && contact.speed.is_some() {
+        return Err(CliError::input("--speeds and --speed are both given; give one of them"));
+    }
     if args.seeds.is_some() && args.scene.surface.seed.is_some() {
         return Err(CliError::input("--seeds and --seed are both given; give one of them"));
     }
@@ -340,9 +343,10 @@ fn scenes(args: &SweepArgs) -> Result<Vec<(String, Scene)>, CliError> {
 
 /// The scenes with their names, in all variations.
 fn varied(args: &SweepArgs, scenes: Vec<(String, Scene)>) -> Result<Vec<(String, Varied, Scene)>, CliError> {
+    let variations: Vec<Variation> = args.vary.iter().chain(&args.speeds).cloned().collect();
     let mut all = Vec::new();
     for (name, scene) in scenes {
-        let varied = super::varied::scenes(&args.vary, &scene)?;
+        let varied = super::varied::scenes(&variations, &scene)?;
         all.extend(varied.into_iter().map(|(values, scene)| (name.clone(), values, scene)));
     }
     Ok(all)
