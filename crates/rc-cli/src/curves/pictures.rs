@@ -55,7 +55,7 @@ fn contact(fields: &Path, row: &Row, greatest: f64) -> Result<ContactPicture, Cl
 /// A point of a curve with the errors of both coordinates, in SI units.
 type Point = [Mean; 2];
 
-/// A quantity against the mean pressure.
+/// A quantity against the mean pressure, the speed or the time.
 struct CurvePicture {
     name: &'static str,
     title: String,
@@ -70,7 +70,9 @@ struct CurvePicture {
 impl CurvePicture {
     /// The picture of `quantity`; `None` if no row has it.
     fn of(table: &SweepTable, quantity: Quantity) -> Option<Self> {
-        let scenes: Vec<(String, Vec<Point>)> = table.scenes().into_iter().map(|rows| curve(rows, quantity)).collect();
+        let against = table.against;
+        let of_scene = |rows| curve(rows, [against, quantity]);
+        let scenes: Vec<(String, Vec<Point>)> = table.scenes().into_iter().map(of_scene).collect();
         if scenes.iter().all(|(_, points)| points.is_empty()) {
             return None;
         }
@@ -82,14 +84,14 @@ impl CurvePicture {
             points().flat_map(move |at| [at[i].value - at[i].error(), at[i].value, at[i].value + at[i].error()])
         };
         // The gap falls with the logarithm of the load.
-        let log_y = is_log && quantity.name != "gap";
+        let log_y = is_log && against == PRESSURE && quantity.name != "gap";
         let seeds = table.surfaces().len() / table.scenes().len().max(1);
         let of_seeds = if seeds > 1 { ", means over seeds" } else { "" };
         let title = quantity.words.split(',').next().unwrap_or_default();
         Some(Self {
             name: if quantity.name == "of_bodies" { "conductance-of-bodies" } else { quantity.name },
             title: format!("{}{}{of_seeds}", title[..1].to_uppercase(), &title[1..]),
-            x: Axis::of(PRESSURE.words, PRESSURE.unit, is_log, ends(0)),
+            x: Axis::of(against.words, against.unit, is_log, ends(0)),
             y: Axis::of(quantity.words, quantity.unit, log_y, ends(1)),
             scenes,
             theory,
@@ -118,10 +120,10 @@ impl CurvePicture {
 
 /// The curve of a scene: means over the seeds at loads that all have, with their errors; if there is no such load, of
 /// those that are there.
-fn curve(rows: &[Row], quantity: Quantity) -> (String, Vec<Point>) {
+fn curve(rows: &[Row], [against, quantity]: [Quantity; 2]) -> (String, Vec<Point>) {
     let common = AtLoad::of_all_seeds(rows);
     let loads = if common.is_empty() { AtLoad::all(rows) } else { common };
-    let points = loads.iter().filter_map(|at| Some([at.mean(PRESSURE)?, at.mean(quantity)?]));
+    let points = loads.iter().filter_map(|at| Some([at.mean(against)?, at.mean(quantity)?]));
     (rows.first().map(|row| row.label.clone()).unwrap_or_default(), points.collect())
 }
 

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::frames::Frames;
 use super::page::{Page, Text, Tile, made};
 use super::{percolation, sweep_command};
-use crate::curves::columns::{PRESSURE, QUANTITIES, Quantity};
+use crate::curves::columns::{PRESSURE, QUANTITIES, Quantity, SWEPT};
 use crate::curves::means::{AtLoad, Mean};
 use crate::curves::table::{Row, SweepTable};
 use crate::curves::text::cell;
@@ -22,6 +22,8 @@ use rc_sweep::WarningCode;
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Curves {
     scenes: Vec<SceneCurves>,
+    /// What the quantities are drawn against: `pressure`, `speed` or `time`.
+    against: &'static str,
     /// Whether the loads have a constant ratio, so that logarithmic axes show them evenly.
     geometric: bool,
     persson: Vec<PerssonLine>,
@@ -70,15 +72,16 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
     Ok(Page {
         title: format!("Sweep: {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
         subtitle: format!(
-            "{} on {}, at prescribed {}s",
+            "{} on {}, at {}{}s",
             count(rows.len(), "row"),
             count(table.surfaces().len(), "surface"),
+            if table.against == PRESSURE { "prescribed " } else { "several " },
             rows[0].control
         ),
         status,
         good,
         warnings: warnings(rows),
-        tiles: tiles(rows),
+        tiles: tiles(&table),
         commands: settings.map_or_else(Vec::new, sweep_command::commands),
         files,
         made: made(),
@@ -130,7 +133,7 @@ impl SceneCurves {
 /// The point with value and error of each quantity that has them.
 fn point(of: impl Fn(Quantity) -> Option<[f64; 2]>) -> Point {
     let mut point = Point::new();
-    for quantity in [PRESSURE].into_iter().chain(QUANTITIES) {
+    for quantity in [PRESSURE].into_iter().chain(SWEPT).chain(QUANTITIES) {
         if let Some([value, error]) = of(quantity) {
             point.insert(quantity.name.to_owned(), value);
             point.insert(format!("{}_error", quantity.name), error);
@@ -139,7 +142,8 @@ fn point(of: impl Fn(Quantity) -> Option<[f64; 2]>) -> Point {
     point
 }
 
-fn tiles(rows: &[Row]) -> Vec<Tile> {
+fn tiles(table: &SweepTable) -> Vec<Tile> {
+    let (rows, against) = (&table.rows, table.against);
     let range = |key: &str| {
         let values = rows.iter().filter_map(|row| row.number(key));
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
@@ -151,13 +155,17 @@ fn tiles(rows: &[Row]) -> Vec<Tile> {
     };
     let (low, high) = range("area_fraction");
     let seconds: f64 = rows.iter().filter_map(|row| row.number("wall_seconds")).sum();
-    vec![
+    let (least, most) = range("friction");
+    let friction = (most >= least).then(|| format!("{} – {}", digits(least, 3), digits(most, 3)));
+    let friction = friction.map(|value| Tile { name: "friction", value });
+    let tiles = vec![
         Tile { name: "rows", value: rows.len().to_string() },
-        Tile { name: "mean pressure", value: from_to("mean_pressure", "Pa") },
+        Tile { name: against.words, value: from_to(against.key(), against.unit) },
         Tile { name: "contact area", value: format!("{} – {} %", digits(100.0 * low, 3), digits(100.0 * high, 3)) },
         Tile { name: "penetration", value: from_to("penetration", "m") },
         Tile { name: "time of all rows", value: format!("{} s", digits(seconds, 3)) },
-    ]
+    ];
+    tiles.into_iter().chain(friction).collect()
 }
 
 fn body(table: &SweepTable) -> Result<Curves, CliError> {
@@ -170,10 +178,17 @@ fn body(table: &SweepTable) -> Result<Curves, CliError> {
     });
     let name = if table.rows.iter().any(|row| row.label != row.scene) { "variation" } else { "scene" };
     let mut heads = if several { vec![name] } else { Vec::new() };
-    heads.extend(["seed", "mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness", "status"]);
+    let against = (table.against != PRESSURE).then_some(table.against);
+    let slides = table.rows[0].number("friction").is_some();
+    heads.push("seed");
+    heads.extend(against.map(|quantity| quantity.words));
+    heads.extend(["mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness"]);
+    heads.extend(slides.then_some("friction"));
+    heads.push("status");
     let persson = persson(table);
     Ok(Curves {
         percolation: percolation::note(flows.collect()),
+        against: table.against.name,
         geometric: table.is_geometric(),
         means: means(table, name),
         heads,
@@ -212,7 +227,7 @@ fn means(table: &SweepTable, name: &'static str) -> Option<Table> {
         return None;
     }
     let has = |quantity: &Quantity| all.iter().any(|at| at.mean(*quantity).is_some());
-    let shown: Vec<Quantity> = [PRESSURE].into_iter().chain(QUANTITIES).filter(has).collect();
+    let shown: Vec<Quantity> = [PRESSURE].into_iter().chain(SWEPT).chain(QUANTITIES).filter(has).collect();
     let mut heads = if several { vec![name] } else { Vec::new() };
     heads.push("surfaces");
     heads.extend(shown.iter().map(|quantity| quantity.words));
@@ -231,14 +246,19 @@ fn cells(row: &Row, several: bool) -> Vec<String> {
     let of = |key: &str, unit| row.number(key).map_or_else(|| "–".to_owned(), |value| engineering(value, unit));
     let [area, error] = ["area_fraction", "area_fraction_error"].map(|key| 100.0 * row.number(key).unwrap_or(0.0));
     let mut cells = if several { vec![row.label.clone()] } else { Vec::new() };
+    cells.push(row.seed.map_or_else(|| "–".to_owned(), |seed| seed.to_string()));
+    cells.extend(SWEPT.iter().any(|one| one.name == row.control).then(|| row.load_in_words()));
     cells.extend([
-        row.seed.map_or_else(|| "–".to_owned(), |seed| seed.to_string()),
         of("mean_pressure", "Pa"),
         of("penetration", "m"),
         format!("{} ± {}", digits(area, 4), digits(error, 1)),
         of("mean_gap", "m"),
         row.number("contact_stiffness").map_or_else(|| "infinite".to_owned(), |value| engineering(value, "Pa/m")),
-        row.status.replace('_', " "),
     ]);
+    let friction = row.number("friction").map(|friction| {
+        format!("{} ± {}", digits(friction, 4), digits(row.number("friction_error").unwrap_or(0.0), 1))
+    });
+    cells.extend(friction);
+    cells.push(row.status.replace('_', " "));
     cells
 }

@@ -25,10 +25,17 @@ impl PronySpec {
 }
 
 impl FromStr for PronySpec {
-    type Err = std::convert::Infallible;
+    type Err = String;
 
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Ok(Self::File(text.into()))
+    /// Reads the name of a file, or a list such as `[[3,0.001],[6,0.1]]`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        if !text.trim_start().starts_with('[') {
+            return Ok(Self::File(text.into()));
+        }
+        let terms = serde_json::from_str(text);
+        terms
+            .map(Self::Terms)
+            .map_err(|_| format!("must be a file, or a list such as [[3,0.001],[6,0.1]], not '{text}'"))
     }
 }
 
@@ -51,8 +58,8 @@ impl<'de> Deserialize<'de> for PronySpec {
                 f.write_str("the name of a file in quotes, or a list of pairs [g, tau]")
             }
 
-            fn visit_str<E: Error>(self, path: &str) -> Result<PronySpec, E> {
-                Ok(PronySpec::File(path.into()))
+            fn visit_str<E: Error>(self, text: &str) -> Result<PronySpec, E> {
+                text.parse().map_err(E::custom)
             }
 
             fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<PronySpec, A::Error> {
