@@ -10,7 +10,7 @@ mod layers;
 mod like;
 mod map;
 mod realisation;
-mod sliding;
+pub(crate) mod sliding;
 mod surface;
 
 pub use checks::checked_grid;

@@ -1,5 +1,6 @@
 //! The keys of a surface that slides over a solid that relaxes.
 
+use rc_core::quantity::{count, digits, engineering};
 use rc_core::{Boundary, DVec2, Grid};
 use rc_kernel::{MaterialError, Relaxation};
 use rc_solver::Method;
@@ -38,6 +39,32 @@ impl SlidingSolid {
         }
         Ok(())
     }
+}
+
+/// Speed, direction and material of these keys in words; `None` without a speed.
+pub(crate) fn in_words(keys: &ContactKeys) -> Option<String> {
+    let speed = engineering(keys.speed?, "m/s");
+    let direction = keys.direction.unwrap_or(0.0);
+    let (_, material) = material(keys).ok()??;
+    let times = match (&keys.prony, keys.relaxation_time, keys.fractional) {
+        (Some(PronySpec::Terms(terms)), ..) => count(terms.len(), "relaxation time"),
+        (_, Some(time), _) => format!("the relaxation time {}", engineering(time, "s")),
+        (.., Some(solid)) => {
+            format!(
+                "a fractional relaxation of the exponent {} and the time {}",
+                solid.alpha,
+                engineering(solid.tau, "s")
+            )
+        }
+        _ => return None,
+    };
+    let ratio = digits(material.glassy_ratio(), 4);
+    Some(format!("{speed} along {direction}°, over a solid of {times} and the glassy ratio {ratio}"))
+}
+
+/// The unit vector along the direction of these keys.
+pub(crate) fn direction(keys: &ContactKeys) -> DVec2 {
+    unit_vector(keys.direction.unwrap_or(0.0))
 }
 
 /// The unit vector at this angle (degrees), which is exact along the axes.
@@ -106,7 +133,7 @@ fn check_speed(speed: f64) -> Result<(), CliError> {
 }
 
 /// The material of the keys, and the key that gives it.
-pub(crate) fn material(keys: &ContactKeys) -> Result<Option<(&'static str, Relaxation)>, CliError> {
+fn material(keys: &ContactKeys) -> Result<Option<(&'static str, Relaxation)>, CliError> {
     let given = [
         ("prony", keys.prony.is_some()),
         ("glassy_ratio", keys.glassy_ratio.is_some()),
