@@ -71,13 +71,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
     let files = text.map(|text| Text { title: "Settings of the sweep", text }).into_iter().collect();
     Ok(Page {
         title: format!("Sweep: {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
-        subtitle: format!(
-            "{} on {}, at {}{}s",
-            count(rows.len(), "row"),
-            count(table.surfaces().len(), "surface"),
-            if table.against == PRESSURE { "prescribed " } else { "several " },
-            rows[0].control
-        ),
+        subtitle: subtitle(&table),
         status,
         good,
         warnings: warnings(rows),
@@ -88,6 +82,16 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
         kind: "sweep",
         body: body(&table)?,
     })
+}
+
+fn subtitle(table: &SweepTable) -> String {
+    let [rows, curves] = [(table.rows.len(), "row"), (table.surfaces().len(), "curve")].map(|(n, what)| count(n, what));
+    let control = &table.rows[0].control;
+    if table.against == PRESSURE {
+        format!("{rows} on {}, at prescribed {control}s", count(table.surfaces().len(), "surface"))
+    } else {
+        format!("{rows} in {curves}, at several {control}s")
+    }
 }
 
 /// One line for each code of a warning, with the number of its rows.

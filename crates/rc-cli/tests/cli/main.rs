@@ -16,6 +16,7 @@ mod rectangles;
 mod report;
 mod robustness;
 mod shapes;
+mod sliding;
 mod solids;
 mod solve;
 mod spectrum;
