@@ -100,6 +100,11 @@ impl ConjugateDirections {
         &self.preconditioned
     }
 
+    /// The present direction, and the pressures that clipping has added.
+    pub(crate) fn direction_and_added(&mut self) -> (&[f32], &mut [f32]) {
+        (&self.direction, &mut self.preconditioned)
+    }
+
     /// The present direction, its displacement and its elements, and the place of the next residual.
     pub(crate) fn steps_and_residuals(
         &mut self,

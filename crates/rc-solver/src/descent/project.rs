@@ -37,12 +37,36 @@ impl Descent<'_> {
             let sums = self.within_bounds(sums);
             return Ok(self.meet_penetration(sums));
         }
+        Ok(self.restore(&shares, reached, gradient.unit))
+    }
+
+    /// As [`Descent::project`], along a direction whose displacement is not known.
+    ///
+    /// One application of L gives that of the step, of clipping and of the loads that are moved.
+    pub(crate) fn leap(&mut self, length: f64, observer: &dyn Observer) -> Result<GapSums, Stopped> {
+        let (gradient, len) = (self.gradient(), self.layout.len());
+        self.directions.displacement.fill(0.0);
+        let (_, loads) = self.clip(length, false, &gradient);
+        let shares = Shares::new(self.squares(), &loads);
+        unless_stopped(observer)?;
+        let reached = self.may_reach_hardness(&shares);
+        let (factor, (direction, added)) = ((length * gradient.unit) as f32, self.directions.direction_and_added());
+        parallel::for_each(direction.chunks(len).zip(added.chunks_mut(len)), |(direction, added)| {
+            for (t, added) in direction.iter().zip(added) {
+                *added += factor * t;
+            }
+        });
+        Ok(self.restore(&shares, reached, gradient.unit))
+    }
+
+    /// Restores the loads of squares after clipping. The gap follows all changes of the pressure.
+    fn restore(&mut self, shares: &Shares, reached: bool, unit: f64) -> GapSums {
         // Loads are only moved between squares. Scaling, which is exact, then sets the load of the cell.
         let scale = if reached {
-            self.share_within_bounds(&shares, gradient.unit);
+            self.share_within_bounds(shares, unit);
             1.0
         } else {
-            let load = self.share(&shares, gradient.unit);
+            let load = self.share(shares, unit);
             self.scale_to_load(load)
         };
         self.info.operator_applications += 1;
@@ -56,7 +80,7 @@ impl Descent<'_> {
         let sums = GapSums::total(&self.layout, sums);
         self.pressed = sums.next_pressed();
         let sums = self.within_bounds(sums);
-        Ok(self.meet_penetration(sums))
+        self.meet_penetration(sums)
     }
 
     /// The factor from this load to the prescribed one. It is 1 if none is prescribed, or if nothing presses.

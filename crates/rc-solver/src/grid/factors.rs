@@ -4,6 +4,7 @@ use rc_core::{Complex64, Grid, Kernel};
 use rc_fft::{Complex, Convolution, LineConvolution, SymbolTable, TransformReal, WaveTable};
 
 /// Factors of the waves of a grid, including that of the inverse transform.
+#[derive(Clone)]
 pub(crate) enum Factors<T> {
     /// Real factors, even in both wavenumbers.
     AtRest(SymbolTable<T>),

@@ -15,7 +15,11 @@ use crate::grid::response::GridResponse;
 
 /// The operators L of `kernel` on `grid`.
 pub(crate) fn uniform_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
-    let response = GridResponse::of(grid, kernel);
+    operators_of(grid, kernel, GridResponse::of(grid, kernel))
+}
+
+/// The operators L of `kernel` with its `response` on `grid`.
+pub(crate) fn operators_of(grid: Grid, kernel: &dyn Kernel, response: GridResponse) -> LevelOperators<'static> {
     LevelOperators { corrections: corrections_of(grid, kernel, &response), fresh: operator_of(grid, response) }
 }
 

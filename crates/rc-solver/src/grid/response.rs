@@ -16,6 +16,7 @@ const GREATEST_FACTOR: usize = 5;
 /// L on a grid, as the symbol of a kernel.
 ///
 /// The symbol is on the grid or on a larger one.
+#[derive(Clone)]
 pub(crate) struct GridResponse {
     grid: Grid,
     /// Number of elements of the transforms along both axes.

@@ -59,6 +59,8 @@ pub enum Feature {
     Ranks,
     /// A file from which a solve continues.
     Checkpoint,
+    /// A surface that slides over a material that relaxes.
+    Sliding,
     /// Many loads or surfaces.
     Sweep,
     /// A picture while the solve runs.
@@ -69,7 +71,7 @@ pub enum Feature {
 
 use Feature::{
     AreaError, BorderLevel, Checkpoint, DryRun, Flat, FreeBorders, Hardness, HeightMap, KernelFunction, Layer, Leakage,
-    Line, OblongElements, OblongGrid, OtherSolid, OwnKernel, OwnOperator, Penetration, Ranks, Spectral, Sweep,
+    Line, OblongElements, OblongGrid, OtherSolid, OwnKernel, OwnOperator, Penetration, Ranks, Sliding, Spectral, Sweep,
     UnevenGrid, Watch,
 };
 
@@ -91,10 +93,11 @@ const SQUARE: Not = Some("the adaptive method needs square elements");
 const OF_LOVE: Not = Some("it needs the coefficients of the kernel love on the half-space");
 const HALVES: Not = Some("only the adaptive method halves elements at the edges of contacts");
 const OF_MAPS: Not = Some("its mesh divides the area of a map, and a profile has none");
+const LAGS: Not = Some("stencils that lag behind the pressure have no adaptive form");
 const DIVIDED: Not = Some("only the adaptive method runs on several ranks");
 
 /// The rows of the table.
-const ROWS: [Row; 23] = [
+const ROWS: [Row; 24] = [
     (Spectral, "kernel", "the kernel spectral", [SPECTRAL, None, OF_LOVE]),
     (OwnKernel, "kernel", "a kernel without a split by scale", [NO_FORM, None, OF_LOVE]),
     (OtherSolid, "kernel", "another solid with a split by scale", [None, None, OF_LOVE]),
@@ -120,13 +123,14 @@ const ROWS: [Row; 23] = [
     (Leakage, "leakage", "the flow through the gap", ALL),
     (Ranks, "ranks", "several ranks", [None, DIVIDED, DIVIDED]),
     (Checkpoint, "checkpoint", "a checkpoint", ALL),
+    (Sliding, "speed", "a sliding surface", [LAGS, None, Some("its procedure needs a symmetric operator")]),
     (Sweep, "sweep", "a sweep", ALL),
     (Watch, "watch", "a picture while it is solved", ALL),
     (DryRun, "dry_run", "a dry run", ALL),
 ];
 
 /// Features that exclude each other with every method. The message names the key of the first.
-const PAIRS: [(Feature, Feature, &str); 22] = [
+const PAIRS: [(Feature, Feature, &str); 24] = [
     (Spectral, FreeBorders, "its waves are periodic"),
     (FreeBorders, KernelFunction, "the function describes a periodic cell"),
     (FreeBorders, Layer, "the response of a layer is known in a periodic cell only"),
@@ -143,6 +147,8 @@ const PAIRS: [(Feature, Feature, &str); 22] = [
     (AreaError, DryRun, "its grid is not known before the solve (give grid instead)"),
     (Line, FreeBorders, "a load on a line displaces a half-plane without limit, so the profile is periodic"),
     (Line, Leakage, "each contact of a profile closes the gap along its whole width"),
+    (Sliding, FreeBorders, "its waves are periodic"),
+    (Sliding, KernelFunction, "the function has no compliance for each alias of a wave"),
     (Watch, DryRun, "a dry run has no contact to show"),
     (Watch, Ranks, "no rank has the whole contact while it is solved"),
     (Leakage, Ranks, "the flow is not solved over ranks"),

@@ -3,7 +3,7 @@
 //! The kernel or operator is the caller's. [`rc_core::testing`] has the thorough checks.
 
 use rc_core::testing::quasi_random;
-use rc_core::{Grid, Kernel, Operator};
+use rc_core::{ComplexSymbol, Grid, Kernel, Operator};
 
 use crate::problem::error::{OperatorFault, ProblemError};
 
@@ -64,6 +64,26 @@ pub(crate) fn check_kernel(kernel: &dyn Kernel, grid: Grid) -> Result<(), Proble
         let is_mirrored = || (symbol(ky, kx) - value).abs() <= MIRROR_ERROR * value;
         if grid.is_square() && kx.max(ky) > 0 && !is_mirrored() {
             return fault(ky, kx, symbol(ky, kx), "the same at (ky, kx), since the grid is square");
+        }
+    }
+    match kernel.sliding_symbol(grid) {
+        Some(symbol) => check_sliding(kernel, grid, &symbol),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a complex symbol that is not finite, or whose real part is not positive.
+///
+/// With a positive real part the operator is monotone, and there is one solution.
+fn check_sliding(kernel: &dyn Kernel, grid: Grid, symbol: &ComplexSymbol<'_>) -> Result<(), ProblemError> {
+    let waves = [grid.nx() / 2 + 1, grid.ny() / 2 + 1];
+    for (kx, ky) in places(waves, FEWEST_WAVES).filter(|wave| *wave != (0, 0)) {
+        for sign in [1, -1] {
+            let value = symbol(kx as i64, sign * ky as i64);
+            if !(value.re > 0.0 && value.re.is_finite() && value.im.is_finite()) {
+                let (kernel, wanted) = (kernel.name(), "finite with a positive real part, for a surface that slides");
+                return Err(ProblemError::Symbol { kernel, grid, kx, ky, value: value.re, wanted });
+            }
         }
     }
     Ok(())

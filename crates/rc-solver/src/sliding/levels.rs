@@ -3,12 +3,11 @@
 use rc_core::{Field, Grid, Kernel, Observer};
 
 use crate::descent::info::{GridSolution, LevelInfo, LevelValues};
-use crate::descent::operators::LevelOperators;
 use crate::descent::outcome::Outcome;
 use crate::descent::run::{DescentObserver, Goal};
 use crate::descent::state::{Descent, Start};
 use crate::grid::full_contact;
-use crate::grid::operators::{certifying_operators, corrections_of, operator_of, uniform_operators};
+use crate::grid::operators::{certifying_operators, corrections_of, operators_of};
 use crate::grid::response::GridResponse;
 use crate::levels::grids::{GridLevels, coarser_heights};
 use crate::levels::nested::{Begun, History, Levels, Nested};
@@ -62,13 +61,9 @@ struct SlidingLevels<'a> {
 
 impl<'a> SlidingLevels<'a> {
     /// The pressure on the coarsest grid of an elastic solid with the storage modulus of each wave.
-    fn elastic_start(&self, above: usize, goal: Goal, observer: &dyn Observer) -> Start {
+    fn elastic_start(&self, above: usize, storage: GridResponse, goal: Goal, observer: &dyn Observer) -> Start {
         let grid = self.grids.grid(above);
-        let response = || GridResponse::of(grid, self.kernel).storage();
-        let operators = LevelOperators {
-            corrections: corrections_of(grid, self.kernel, &response()),
-            fresh: operator_of(grid, response()),
-        };
+        let operators = operators_of(grid, self.kernel, storage);
         let heights = self.grids.heights(above).values();
         let mut descent = Descent::new(heights, grid, operators, self.grids.problem(), Start::Nothing);
         descent.run(Goal { certify: None, ..goal }, &DescentObserver { observer, mesh: &grid });
@@ -89,18 +84,20 @@ impl<'a> Levels for SlidingLevels<'a> {
     fn solve_level(&self, above: usize, start: Start, goal: Goal, observer: &dyn Observer) -> Self::Solved {
         let (grid, heights) = (self.grid(above), self.grids.heights(above).values());
         let watch = DescentObserver { observer, mesh: &grid };
-        let storage = || corrections_of(grid, self.kernel, &GridResponse::of(grid, self.kernel).storage());
+        let response = GridResponse::of(grid, self.kernel);
+        let elastic = response.clone().storage();
+        let storage = corrections_of(grid, self.kernel, &elastic);
         let is_begun = !matches!(start, Start::Nothing);
-        let start = if is_begun { start } else { self.elastic_start(above, goal, observer) };
+        let start = if is_begun { start } else { self.elastic_start(above, elastic, goal, observer) };
         if above == 0 && is_begun && observer.should_stop() {
             let operators = certifying_operators(grid, self.kernel);
             let mut descent = Descent::without_steps(heights, grid, operators, self.grids.problem(), start);
             let outcome = descent.certify_start(goal, &watch);
-            return (SlidingDescent { descent, storage: storage(), work: Work::default() }, outcome);
+            return (SlidingDescent::new(descent, storage), outcome);
         }
-        let operators = uniform_operators(grid, self.kernel);
+        let operators = operators_of(grid, self.kernel, response);
         let descent = Descent::new(heights, grid, operators, self.grids.problem(), start);
-        let mut sliding = SlidingDescent { descent, storage: storage(), work: Work::default() };
+        let mut sliding = SlidingDescent::new(descent, storage);
         let outcome = sliding.run(goal, &watch);
         (sliding, outcome)
     }

@@ -8,15 +8,18 @@
 use rc_core::Observer;
 
 use crate::descent::gmres::{self, ActiveElements, LinearSystem};
-use crate::descent::operators::{PreconditionedOperator, read_blocks, write_blocks};
+use crate::descent::operators::PreconditionedOperator;
 use crate::descent::outcome::Outcome;
 use crate::descent::run::{DescentObserver, Goal};
 use crate::descent::state::Descent;
 use crate::descent::stop::Stopped;
 use crate::descent::sums::GapSums;
 
-/// How accurately the system of a Newton step is solved.
-const GMRES: gmres::Goal = gmres::Goal { reduction: 0.1, directions: 40 };
+/// Range of the residual that GMRES leaves of the system of a Newton step, relative to its right side.
+const REDUCTIONS: [f64; 2] = [0.1, 0.4];
+
+/// Maximum number of directions of GMRES, whose vectors have values of the active elements only.
+const DIRECTIONS: usize = 40;
 
 /// Parts of a Newton step that are tried.
 const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
@@ -43,9 +46,16 @@ pub(crate) struct SlidingDescent<'a> {
     /// The elastic solid with the storage modulus of each wave.
     pub(crate) storage: Box<dyn PreconditionedOperator + 'a>,
     pub(crate) work: Work,
+    /// Ratio of the energy errors after and before the last Newton step.
+    last_ratio: f64,
 }
 
-impl SlidingDescent<'_> {
+impl<'a> SlidingDescent<'a> {
+    /// `storage` is the solid with the storage modulus of each wave.
+    pub(crate) fn new(descent: Descent<'a>, storage: Box<dyn PreconditionedOperator + 'a>) -> Self {
+        Self { descent, storage, work: Work::default(), last_ratio: 1.0 }
+    }
+
     /// Iterates until the goal is reached, or cannot be reached.
     pub(crate) fn run(&mut self, goal: Goal, watch: &DescentObserver<'_>) -> Outcome {
         let mut sums = self.descent.start();
@@ -101,26 +111,27 @@ impl SlidingDescent<'_> {
     /// A part of a Newton step that lowers the energy error. `None` if no part does, and then nothing has changed.
     fn newton_step(&mut self, sums: &GapSums, observer: &dyn Observer) -> Result<Option<GapSums>, Stopped> {
         let error = self.energy_error(sums);
-        let Some(set) = self.direction(sums, observer)? else { return Ok(None) };
+        let Some(elements) = self.direction(sums, observer)? else { return Ok(None) };
         let descent = &self.descent;
         let before = (descent.pressure.clone(), descent.gap.clone());
         let (zero_gap, pressed, unit) = (descent.zero_gap, descent.pressed, descent.problem.unit());
         for part in PARTS {
-            self.descent.zero_gap = zero_gap + part * unit * set.mean_displacement;
-            let next = self.descent.project(part * unit, false, observer)?;
-            if self.energy_error(&next) < (1.0 - PROGRESS * part) * error {
+            let next = self.descent.leap(part * unit, observer)?;
+            let energy_error = self.energy_error(&next);
+            if energy_error < (1.0 - PROGRESS * part) * error {
+                self.last_ratio = energy_error / error;
                 return Ok(Some(next));
             }
             let descent = &mut self.descent;
             (descent.pressure.copy_from_slice(&before.0), descent.gap.copy_from_slice(&before.1));
-            (descent.zero_gap, descent.pressed, descent.is_chosen) = (zero_gap, pressed, false);
-            descent.directions.active.copy_from_slice(&set.elements.active);
+            (descent.zero_gap, descent.pressed) = (zero_gap, pressed);
+            descent.directions.active.copy_from_slice(&elements.active);
         }
         Ok(None)
     }
 
     /// Solves for a Newton direction and its displacement. `None` if no element is active.
-    fn direction(&mut self, sums: &GapSums, observer: &dyn Observer) -> Result<Option<Active>, Stopped> {
+    fn direction(&mut self, sums: &GapSums, observer: &dyn Observer) -> Result<Option<ActiveElements>, Stopped> {
         let descent = &mut self.descent;
         descent.is_chosen = false;
         let set = descent.begin_round();
@@ -128,30 +139,20 @@ impl SlidingDescent<'_> {
             return Ok(None);
         }
         descent.precondition_mean(sums, set.n);
-        let len = descent.layout.len();
-        let elements = ActiveElements::new(descent.directions.active.clone(), len);
+        let elements = ActiveElements::new(descent.directions.active.clone(), descent.layout.len());
         let mut residual = elements.gather(&descent.directions.preconditioned);
         residual.iter_mut().for_each(|value| *value = -*value);
         let operator = &mut *descent.operators.corrections;
         let mut system = LinearSystem { operator, elements: &elements, fixed_mean: set.fixed_mean };
-        let (step, iterations) = system.solve(residual, GMRES, observer)?;
+        // A step that gains little is limited by the choice of active elements, not by its accuracy.
+        let reduction = (0.5 * self.last_ratio).clamp(REDUCTIONS[0], REDUCTIONS[1]);
+        let (step, iterations) = system.solve(residual, gmres::Goal { reduction, directions: DIRECTIONS }, observer)?;
         elements.scatter(&step, &mut descent.directions.direction);
         self.work.gmres_iterations += iterations;
         descent.info.iterations += iterations.max(1);
         descent.info.preconditioner_applications += iterations;
-        descent.info.operator_applications += iterations + 1;
-        let directions = &mut descent.directions;
-        let operator = &mut *descent.operators.corrections;
-        write_blocks(operator, directions.direction.chunks(len), |step, written| written.copy_from_slice(step));
-        operator.apply();
-        let blocks = directions.displacement.chunks_mut(len).zip(directions.active.chunks(len));
-        let sums = read_blocks(operator, blocks, |(kept, active), read| {
-            kept.copy_from_slice(read);
-            let of_active = read.iter().zip(active).filter(|(_, active)| **active);
-            [of_active.map(|(&u, _)| f64::from(u)).sum()]
-        });
-        let [displaced] = descent.layout.total(sums);
-        Ok(Some(Active { elements, mean_displacement: displaced / set.n }))
+        descent.info.operator_applications += iterations;
+        Ok(Some(elements))
     }
 
     /// A round of the descent with the storage modulus. The heights make up for what the operators differ in.
@@ -167,11 +168,4 @@ impl SlidingDescent<'_> {
         // The gap has followed the other operator.
         Ok(descent.refresh())
     }
-}
-
-/// The elements of a Newton step.
-struct Active {
-    elements: ActiveElements,
-    /// Mean displacement of the direction over them.
-    mean_displacement: f64,
 }

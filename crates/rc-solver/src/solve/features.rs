@@ -20,7 +20,8 @@ pub(super) fn features(problem: &ContactProblem<'_>, params: &SolveParams) -> Ve
     let all = [
         (Feature::Line, heights.grid().ny() == 1 && problem.boundary() == Boundary::Periodic),
         (Feature::Layer, is_layer),
-        (Feature::OwnKernel, !is_layer && kernel.split().is_none()),
+        (Feature::Sliding, kernel.sliding_velocity().is_some()),
+        (Feature::OwnKernel, !is_layer && kernel.split().is_none() && kernel.sliding_velocity().is_none()),
         (Feature::OtherSolid, kernel.split().is_some_and(|split| split.deviates_below(0.0) > 0.0)),
         (Feature::FreeBorders, problem.boundary() == Boundary::Free),
         (Feature::Penetration, matches!(problem.control, Control::Penetration(_))),
