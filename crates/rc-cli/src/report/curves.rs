@@ -257,7 +257,11 @@ fn cells(row: &Row, several: bool) -> Vec<String> {
         of("penetration", "m"),
         format!("{} ± {}", digits(area, 4), digits(error, 1)),
         of("mean_gap", "m"),
-        row.number("contact_stiffness").map_or_else(|| "infinite".to_owned(), |value| engineering(value, "Pa/m")),
+        match row.number("contact_stiffness") {
+            Some(value) => engineering(value, "Pa/m"),
+            None if row.cells.contains_key("contact_stiffness") => "infinite".to_owned(),
+            None => "–".to_owned(),
+        },
     ]);
     let friction = row.number("friction").map(|friction| {
         format!("{} ± {}", digits(friction, 4), digits(row.number("friction_error").unwrap_or(0.0), 1))

@@ -79,7 +79,9 @@ pub struct SurfaceKeys {
     #[arg(long, value_name = "NAME", help_heading = help::FILES, hide_possible_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub heights_like: Option<HeightsLike>,
-    /// Unit of a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]
+    /// Unit of a file that names none: m, cm, mm, um, nm, pm [default: m]
+    ///
+    /// Or angstrom.
     #[arg(long, value_name = "UNIT", help_heading = help::FILES)]
     pub unit: Option<LengthUnit>,
     /// Unit of heights, where it differs from --unit
@@ -134,7 +136,7 @@ pub struct SurfaceKeys {
     #[arg(long, value_name = "N", help_heading = help::RANDOM, allow_hyphen_values = true)]
     pub roll_off: Option<f64>,
     /// No waves below this number of waves per cell [default: 1]
-    #[arg(long, value_name = "N", help_heading = help::RANDOM, allow_hyphen_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "N", help_heading = help::RANDOM, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub low_cut: Option<f64>,
     /// fixed: those of the spectrum (Eq. 14); random: Gaussian [default: fixed]
@@ -223,7 +225,7 @@ pub struct ContactKeys {
     #[arg(long, value_name = "PA", help_heading = help::PHYSICS, value_parser = pressure::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "pressure::read", skip_serializing_if = "Option::is_none")]
     pub hardness: Option<f64>,
-    /// Speed (m/s) of the surface over a solid that relaxes: adds the friction
+    /// Speed (m/s) of sliding over a solid that relaxes: adds friction
     ///
     /// Steady sliding along +x, or along --direction. The moduli of the solid are the relaxed ones.
     #[arg(long, value_name = "M/S", help_heading = help::PHYSICS, value_parser = speed::parse, allow_hyphen_values = true)]
@@ -233,7 +235,7 @@ pub struct ContactKeys {
     #[arg(long, value_name = "DEG", help_heading = help::PHYSICS, hide_short_help = true, value_parser = angle::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "angle::read", skip_serializing_if = "Option::is_none")]
     pub direction: Option<f64>,
-    /// Material of a sliding contact: lines g tau (relative to the modulus; s)
+    /// Solid that relaxes: lines g tau (relative to the modulus; s)
     ///
     /// A Prony series, E(t) = E (1 + sum g exp(-t/tau)). Under the title E, moduli are in Pa; titles may give other
     /// units, such as E (MPa).
@@ -278,7 +280,7 @@ pub struct ContactKeys {
     #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
     pub layer_thickness: Option<f64>,
     /// Poisson's ratio of the layer [default: --poisson]
-    #[arg(long, value_name = "NU", help_heading = help::PHYSICS, allow_hyphen_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "NU", help_heading = help::PHYSICS, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layer_poisson: Option<f64>,
     /// adaptive, uniform or gauss-seidel [default: cheaper of the first two]

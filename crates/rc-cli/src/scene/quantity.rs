@@ -79,6 +79,24 @@ pub(crate) fn penetrations(text: &str) -> Result<Loads, String> {
     Loads::with_units(text, Dimension::Length)
 }
 
+/// Reads times of the command line.
+pub(crate) fn times(text: &str) -> Result<Loads, String> {
+    // The ends of a range, or all values.
+    let n_times = if text.contains(':') { 2 } else { usize::MAX };
+    let is_separator = |c: char| c == ':' || c == ',';
+    let number = |(i, part): (usize, &str)| {
+        if i >= n_times {
+            return Ok(part.to_owned());
+        }
+        let time = Quantity::Time.parse(part.trim_end_matches(is_separator))?;
+        if !(time > 0.0 && time.is_finite()) {
+            return Err(format!("each time must be above 0 and finite (s), not {time}"));
+        }
+        Ok(format!("{time}{}", &part[part.trim_end_matches(is_separator).len()..]))
+    };
+    text.split_inclusive(is_separator).enumerate().map(number).collect::<Result<String, String>>()?.parse()
+}
+
 fn read<'de, D: Deserializer<'de>>(quantity: Quantity, deserializer: D) -> Result<f64, D::Error> {
     deserializer.deserialize_any(NumberWithUnit(quantity))
 }

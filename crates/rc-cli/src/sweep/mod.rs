@@ -2,6 +2,7 @@
 
 pub(crate) mod args;
 mod bar;
+mod creep;
 mod doubts;
 mod interrupt;
 mod list;

@@ -8,6 +8,7 @@ use rc_sweep::{ControlKind, FileMark, Loads, MAX_ROWS, PlannedSurface, Seeds, Sw
 use serde_json::json;
 
 use super::args::SweepArgs;
+use super::creep;
 use super::map_mark::MapMark;
 use super::varied::{Variation, Varied};
 use crate::error::CliError;
@@ -33,6 +34,8 @@ pub(super) struct SweptSurface {
     /// Resolved keys without a load.
     contact: ContactKeys,
     loads: Vec<f64>,
+    /// Ratio of the loads to the load under which a solid creeps, at a time.
+    creep: Option<f64>,
     /// Mark that identifies a height map which a program holds.
     held: Option<FileMark>,
 }
@@ -69,9 +72,11 @@ impl Surfaces {
         let n_scenes = scenes.len();
         let scenes = varied(args, scenes)?;
         let control = control(args, &scenes)?;
+        let scenes = creep::after_times(args, control, scenes)?;
         let mut surfaces = Vec::new();
-        for (name, values, scene) in &scenes {
-            let loads = loads(args, control, &scene.contact)?;
+        for (name, values, scene, creep) in &scenes {
+            let mut loads = loads(args, control, &scene.contact)?;
+            loads.iter_mut().for_each(|load| *load *= creep.unwrap_or(1.0));
             check_rows(scenes.len(), args.seeds.as_ref(), loads.len().max(1))?;
             // One scene alone needs no name.
             let in_scene = |error| match error {
@@ -80,7 +85,7 @@ impl Surfaces {
             };
             for keys in seeded(args.seeds.as_ref(), name, scene)? {
                 let surface = SweptSurface::new(name, keys, control, &loads).map_err(in_scene)?;
-                surfaces.push(surface.with(values.clone()));
+                surfaces.push(SweptSurface { creep: *creep, ..surface.with(values.clone()) });
             }
         }
         Ok(Self { control, all: surfaces, n_scenes, keeps_fields: args.fields, run, threads })
@@ -119,9 +124,9 @@ impl Surfaces {
         &self.all
     }
 
-    /// Whether flows are computed.
+    /// Whether flows are computed, whose end under a greater load is sought.
     pub(super) fn leak(&self) -> bool {
-        self.all.iter().any(SweptSurface::leaks)
+        self.all.iter().any(|surface| surface.leaks() && surface.creep.is_none())
     }
 
     /// Quantity of the loads.
@@ -214,7 +219,8 @@ impl SweptSurface {
         let contact = resolve::contact(keys, setup.cell)?;
         let setup = setup.bounded(contact.boundary)?;
         let contact = with_load(control, &contact.keys, None);
-        Ok(Self { scene: name.to_owned(), varied: Varied::new(), seed, setup, contact, loads, held: None })
+        let (scene, varied) = (name.to_owned(), Varied::new());
+        Ok(Self { scene, varied, seed, setup, contact, loads, creep: None, held: None })
     }
 
     /// The contact under `load`, ready to be solved.
@@ -226,6 +232,7 @@ impl SweptSurface {
         let mut contact = resolve::contact(keys, self.setup.cell)?;
         // The memory of a machine must not change the digits of a row.
         contact.params.method_follows_memory = false;
+        contact.creep = self.creep;
         Ok(contact)
     }
 

@@ -148,8 +148,7 @@ fn what_cannot_slide_is_refused() {
     let profile: String =
         (0..64).map(|i| format!("{} {}\n", f64::from(i) * 1e-4, 1e-6 * (f64::from(i) * 0.2).sin())).collect();
     place.write("profile.txt", profile);
-    let line =
-        "solve --heights profile.txt --line --unit m --e-star 4MPa --pressure 2kPa --speed 1 --prony rubber.csv --direction 90";
+    let line = "solve --heights profile.txt --line --unit m --e-star 4MPa --pressure 2kPa --speed 1 --prony rubber.csv --direction 90";
     assert_refused(&run(&place, line), "direction: a profile slides along x; give 0 or 180, not 90");
 }
 
@@ -183,6 +182,60 @@ fn a_sweep_over_speeds_has_the_friction_of_each_solve_and_its_curves() {
     assert_refused(&run(&place, &with_list), "--speeds and --speed are both given");
     let bad = format!("sweep {solid} --pressure 2kPa --speeds 1,2Pa --out t");
     assert_refused(&run(&place, &bad), "speeds: speed: must be a speed in m/s");
+}
+
+#[test]
+fn a_solid_that_creeps_has_the_area_of_the_elastic_contact_under_the_load_that_grows() {
+    let place = Place::new();
+    let solid = format!("{SOFT} --glassy-ratio 10 --relaxation-time 1ms");
+    assert_solved(&run(
+        &place,
+        &format!("sweep {solid} --pressure 2kPa --times 1us,10ms,1s --leakage --quiet --out s"),
+    ));
+    let rows = table(&place.path("s"));
+    let column = |name: &str| -> Vec<f64> {
+        let at = rows[0].iter().position(|head| head == name).unwrap_or_else(|| panic!("no {name}"));
+        rows[1..].iter().map(|row| row[at].parse().expect("a number")).collect()
+    };
+    assert_eq!(column("time"), [1e-6, 1e-2, 1.0]);
+    // J(t)/J∞ = 1 - 0.9 exp(-t/10 ms).
+    for (load, time) in column("control_value").into_iter().zip([1e-6, 1e-2, 1.0]) {
+        let expected = 2e3 * (1.0 - 0.9 * (-time / 1e-2_f64).exp());
+        assert!((load / expected - 1.0).abs() < 1e-12, "{load} for {expected}");
+    }
+    assert!(
+        column("mean_pressure").iter().all(|pressure| (pressure / 2e3 - 1.0).abs() < 1e-12),
+        "the load is constant"
+    );
+    for absent in ["max_pressure", "rms_pressure", "contact_stiffness", "elastic_energy", "friction"] {
+        assert!(!rows[0].iter().any(|head| head == absent), "{absent} is not that of a solid that creeps");
+    }
+    let loads = column("control_value").iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    assert_solved(&run(&place, &format!("sweep {SOFT} --pressures {loads} --leakage --quiet --out elastic")));
+    let elastic = table(&place.path("elastic"));
+    for name in ["area_fraction", "penetration", "mean_gap", "permeance_x"] {
+        let at = elastic[0].iter().position(|head| head == name).expect("a column");
+        let expected: Vec<f64> = elastic[1..].iter().map(|row| row[at].parse().expect("a number")).collect();
+        assert_eq!(column(name), expected, "{name}");
+    }
+    assert_solved(&run(&place, "report s --quiet"));
+    let page = text(&place.bytes("s/report.html"));
+    assert!(page.contains("\"against\":\"time\"") && !page.contains("--vary time"), "a page of times");
+    for (words, expected) in [
+        ("--pressures 1kPa,2kPa --times 1,2", "times: the load is constant; give one --pressure"),
+        ("--penetration 1um --times 1,2", "times: a solid creeps under a constant load"),
+        ("--pressure 1kPa --times 1,2 --fields", "times: the pressure after a time is not that of an elastic contact"),
+        ("--pressure 1kPa --times 1,2 --speed 1", "times: the surface is at rest; omit speed"),
+        ("--pressure 1kPa --times 1,2 --hardness 1MPa", "times: a solid with a hardness"),
+        ("--pressure 1kPa --times 0,2", "each time must be above 0"),
+        ("--pressure 1kPa --times 1,2m", "must be a time in s"),
+    ] {
+        assert_refused(&run(&place, &format!("sweep {solid} {words} --out t")), expected);
+    }
+    let elastic = format!("sweep {SOFT} --pressure 1kPa --times 1,2 --out t");
+    assert_refused(&run(&place, &elastic), "times: an elastic solid does not creep; give prony");
+    let fractional = format!("{elastic} --fractional 0.3,10,1");
+    assert_refused(&run(&place, &fractional), "fractional: its creep is not known; give prony");
 }
 
 #[test]

@@ -33,6 +33,8 @@ pub struct ContactSetup {
     pub layer: Option<Layer>,
     /// Sliding over a material that relaxes, if the surface slides.
     pub sliding: Option<SlidingSolid>,
+    /// Ratio of the load of this elastic contact to the load under which a solid has crept; `None` without creep.
+    pub creep: Option<f64>,
     /// Method, tolerance and limits, without the available memory.
     pub params: SolveParams,
     /// The resolved keys, for `scene.toml`.
@@ -121,8 +123,21 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
         border_level: keys.border_level.unwrap_or(0),
         ..SolveParams::certified()
     };
-    let (place, grid_is_chosen) = (Place::default(), false);
-    Ok(ContactSetup { units, control, hardness, kernel, boundary, layer, sliding, params, keys, place, grid_is_chosen })
+    let (place, grid_is_chosen, creep) = (Place::default(), false, None);
+    Ok(ContactSetup {
+        units,
+        control,
+        hardness,
+        kernel,
+        boundary,
+        layer,
+        sliding,
+        creep,
+        params,
+        keys,
+        place,
+        grid_is_chosen,
+    })
 }
 
 fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {

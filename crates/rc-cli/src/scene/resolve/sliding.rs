@@ -7,6 +7,7 @@ use rc_solver::Method;
 
 use super::checks::missing;
 use crate::error::CliError;
+use crate::scene::file;
 use crate::scene::keys::{ContactKeys, KernelName};
 use crate::scene::material::{FractionalSpec, PronySpec};
 use crate::scene::prony_file::PronyFile;
@@ -119,6 +120,28 @@ pub(super) fn solid(keys: &ContactKeys) -> Result<Option<SlidingSolid>, CliError
             }
             Ok(Some(SlidingSolid { material, speed, direction }))
         }
+    }
+}
+
+/// The material of these keys for creep at rest.
+///
+/// # Errors
+/// [`CliError::Input`] without a Prony series, and for a surface that slides or a hardness.
+pub(crate) fn creeping(keys: &ContactKeys) -> Result<Relaxation, CliError> {
+    if keys.speed.is_some() || keys.direction.is_some() {
+        return Err(CliError::input("times: the surface is at rest; omit speed and direction, or times"));
+    }
+    if keys.hardness.is_some() {
+        return Err(CliError::input("times: a solid with a hardness does not creep by this rule; omit one of them"));
+    }
+    let defaults = ContactKeys { young: file::example().contact.young, ..ContactKeys::default() };
+    let keys = with_terms(keys.clone().over(defaults))?;
+    match material(&keys)? {
+        Some((_, material)) if material.creep(0.0).is_some() => Ok(material),
+        Some((key, _)) => Err(CliError::input(format_args!("{key}: its creep is not known; give prony"))),
+        None => Err(CliError::input(
+            "times: an elastic solid does not creep; give prony, or glassy_ratio and relaxation_time",
+        )),
     }
 }
 
