@@ -45,7 +45,7 @@ class Result:
 
     #: ``converged``, ``full_contact`` or ``not_converged``.
     status: str
-    #: What was prescribed: ``pressure`` or ``penetration``.
+    #: What was prescribed: ``pressure``, ``penetration`` or ``force``. The summary then has the ``force`` (N).
     control: str
     #: ``love``, ``spectral``, or ``own`` for a function.
     kernel: str
@@ -223,6 +223,16 @@ class Result:
         """Overlap that plastic flow has removed (m), shape (ny, nx), ≥ 0, read-only. None without a hardness."""
         field = self._source.plastic_gap()
         return None if field is None else _locked(field)
+
+    @property
+    def force(self) -> float | None:
+        """The force that was prescribed (N). None if pressure or penetration was."""
+        return self.summary.get("force")
+
+    @property
+    def second_body(self) -> dict[str, float] | None:
+        """``young`` (Pa) and ``poisson`` of the other body. None if it is rigid, or if only E* is known."""
+        return self.summary.get("second_body")
 
     @property
     def hardness(self) -> float | None:

@@ -59,10 +59,10 @@ fn report(what: &str, solution: &Solution<'_>, now: std::time::Instant) {
 }
 
 #[test]
-fn scratch() {
-    for kappa in [10.0, 30.0, 100.0, 1000.0] {
-        let (mut worst, mut total, mut failed, mut n, mut max_gmres) = (0, 0, 0, 0, 0);
-        for seed in 1..=30 {
+fn scratch_campaign() {
+    for kappa in [10.0, 30.0, 100.0] {
+        let (mut worst, mut total, mut failed, mut n, mut max_storage) = (0, 0, 0, 0, 0);
+        for seed in 31..=60 {
             let params =
                 SpectrumParams { normalisation: Normalisation::RmsHeight(1.3e-3), ..SpectrumParams::paper(16, seed) };
             let heights = rc_core::HeightField::sample(&Surface::new(&params).unwrap(), Grid::square(128).unwrap());
@@ -84,7 +84,7 @@ fn scratch() {
                                 .unwrap();
                             total += ops;
                             worst = worst.max(ops);
-                            max_gmres = max_gmres.max(s.info().friction.unwrap().storage_rounds);
+                            max_storage = max_storage.max(s.info().friction.unwrap().storage_rounds);
                         }
                         Err(e) => {
                             failed += 1;
@@ -96,6 +96,78 @@ fn scratch() {
                 }
             }
         }
-        println!("kappa {kappa}: {n} solves, {failed} failed, worst {worst} mean {} storage {max_gmres}", total / n);
+        println!("kappa {kappa}: {n} solves, {failed} failed, worst {worst} mean {} storage {max_storage}", total / n);
+    }
+}
+
+/// Located areas and friction on coarse grids against a fine one.
+#[test]
+fn scratch_bars() {
+    for name in ["spectral", "love"] {
+        for side in [64, 128, 256] {
+            let mut lines = Vec::new();
+            let (mut area_hold, mut mu_hold, mut n) = (0, 0, 0);
+            let mut signed = Vec::new();
+            for seed in 101..=108 {
+                let params = SpectrumParams {
+                    normalisation: Normalisation::RmsHeight(1.3e-3),
+                    ..SpectrumParams::paper(16, seed)
+                };
+                let surface = Surface::new(&params).unwrap();
+                for l in [0.001, 0.004, 0.016, 0.06, 0.25, 1.0] {
+                    for load in [2e-4, 2e-3] {
+                        let (material, v) = one_mode(10.0, l);
+                        let s = |side: usize, spectral: bool| {
+                            let heights = rc_core::HeightField::sample(&surface, Grid::square(side).unwrap());
+                            let kernels: [Box<dyn Kernel>; 2] = [
+                                Box::new(Viscoelastic::new(Spectral, &material, v)),
+                                Box::new(Viscoelastic::new(Love, &material, v)),
+                            ];
+                            let s = ContactProblem::new(&heights, Control::MeanPressure(load))
+                                .with_kernel(&*kernels[usize::from(!spectral)])
+                                .solve(&SolveParams::default(), &Silent)
+                                .unwrap();
+                            (s.area(), s.info().friction.unwrap())
+                        };
+                        let (fine, fine_mu) = s(1024, true);
+                        let (coarse, mu) = s(side, name == "spectral");
+                        let (ra, rm) = (
+                            (coarse.fraction - fine.fraction) / coarse.error,
+                            (mu.coefficient - fine_mu.coefficient) / mu.error,
+                        );
+                        n += 1;
+                        area_hold += usize::from(ra.abs() <= 1.0);
+                        mu_hold += usize::from(rm.abs() <= 1.0);
+                        signed.push((
+                            l,
+                            (coarse.fraction / fine.fraction - 1.0),
+                            coarse.error / fine.fraction,
+                            mu.coefficient / fine_mu.coefficient - 1.0,
+                            mu.error / fine_mu.coefficient,
+                        ));
+                        lines.push((ra, rm));
+                    }
+                }
+            }
+            println!("{name} {side}: {n} scenes, area holds {area_hold}, friction holds {mu_hold}");
+            for l in [0.001, 0.004, 0.016, 0.06, 0.25, 1.0] {
+                let of: Vec<_> = signed.iter().filter(|s| s.0 == l).collect();
+                let mean = |f: &dyn Fn(&(f64, f64, f64, f64, f64)) -> f64| {
+                    of.iter().map(|s| f(s)).sum::<f64>() / of.len() as f64
+                };
+                let rms = |f: &dyn Fn(&(f64, f64, f64, f64, f64)) -> f64| {
+                    (of.iter().map(|s| f(s).powi(2)).sum::<f64>() / of.len() as f64).sqrt()
+                };
+                println!(
+                    "   l {l}: area mean {:+.4} rms {:.4} bar {:.4}; mu mean {:+.4} rms {:.4} bar {:.4}",
+                    mean(&|s| s.1),
+                    rms(&|s| s.1),
+                    mean(&|s| s.2),
+                    mean(&|s| s.3),
+                    rms(&|s| s.3),
+                    mean(&|s| s.4)
+                );
+            }
+        }
     }
 }

@@ -31,7 +31,8 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
     let area = percent(s.area_fraction, s.area_fraction_error);
     let counted = digits(100.0 * s.area_fraction_cells, 4);
     let mean_pressure = measured(s.mean_pressure, s.mean_pressure_error_bar, "Pa");
-    let mean_pressure = format!("{mean_pressure} ({} E*)", digits(s.mean_pressure / e_star, 4));
+    let force = s.force.map_or_else(String::new, |force| format!(", from {}", engineering(force, "N")));
+    let mean_pressure = format!("{mean_pressure} ({} E*{force})", digits(s.mean_pressure / e_star, 4));
     let penetration = penetration(s);
     let mut lines = vec![
         ("method", method),

@@ -51,6 +51,7 @@ mod material_ratio;
 mod note;
 pub mod pairs;
 mod parameters;
+mod profile_elements;
 mod profile_parameters;
 pub mod spectrum;
 mod statistics;
@@ -69,6 +70,7 @@ pub use map::{BorderStep, HeightMap};
 pub use material_ratio::{CoreParameters, MaterialRatio};
 pub use note::ReadNote;
 pub use parameters::AreaParameters;
+pub use profile_elements::mean_width_of_elements;
 pub use profile_parameters::ProfileParameters;
 pub use statistics::MapStatistics;
 pub use treat::{

@@ -7,8 +7,9 @@ use std::{fs, io};
 use serde_json::{Map, Value};
 
 use crate::content::{Content, Header};
-use crate::files::{self, FileError, PARTIAL};
+use crate::files::{self, FileError};
 use crate::folder::{ROWS_FOLDER, fields_folder, row_name};
+use crate::hidden::PARTIAL;
 use crate::shard::Shard;
 
 /// The surfaces of a journal: each as text without its loads, and its loads.

@@ -3,8 +3,10 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use tempfile::{NamedTempFile, TempDir};
+use tempfile::NamedTempFile;
 use thiserror::Error;
+
+use crate::hidden::{self, Hidden, PARTIAL};
 
 /// Reasons why files were not written.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -35,9 +37,6 @@ impl FileError {
     }
 }
 
-/// First part of the names of temporary files. A process that is killed may leave such files.
-pub(crate) const PARTIAL: &str = ".rc-partial-";
-
 /// First part of the names of replaced files, inside the hidden folder.
 const EARLIER: &str = "earlier-";
 
@@ -46,7 +45,7 @@ const PROBE: &str = ".rc-probe-";
 
 /// Checks that files can be created in `folder`, or that `folder` can be created.
 ///
-/// Nothing remains afterwards.
+/// Nothing remains afterwards, and what killed processes have left there is removed.
 ///
 /// # Errors
 /// [`FileError::Folder`] when this is not possible.
@@ -60,6 +59,7 @@ pub fn check_folder(folder: &Path) -> Result<(), FileError> {
         return Err(refuse(&format_args!("{} is not a folder", existing.display())));
     }
     tempfile::Builder::new().prefix(PROBE).tempdir_in(existing).map_err(|cause| refuse(&cause))?;
+    hidden::remove_dead(folder);
     Ok(())
 }
 
@@ -75,7 +75,7 @@ fn or_here(path: &Path) -> &Path {
 #[derive(Debug)]
 pub struct Staged {
     folder: PathBuf,
-    hidden: TempDir,
+    hidden: Hidden,
     names: Vec<String>,
 }
 
@@ -88,7 +88,8 @@ impl Staged {
         let folder = or_here(folder).to_owned();
         let fail = |cause: io::Error| FileError::write(&folder, cause);
         std::fs::create_dir_all(&folder).map_err(fail)?;
-        let hidden = tempfile::Builder::new().prefix(PARTIAL).tempdir_in(&folder).map_err(fail)?;
+        hidden::remove_dead(&folder);
+        let hidden = Hidden::new(&folder).map_err(fail)?;
         Ok(Self { folder, hidden, names: Vec::new() })
     }
 
@@ -170,7 +171,7 @@ pub fn write_file<E: std::fmt::Display>(
     let folder = or_here(path.parent().unwrap_or(Path::new("")));
     let fail = |cause: &dyn std::fmt::Display| FileError::write(path, cause);
     std::fs::create_dir_all(folder).map_err(|cause| fail(&cause))?;
-    let hidden = tempfile::Builder::new().prefix(PARTIAL).tempdir_in(folder).map_err(|cause| fail(&cause))?;
+    let hidden = Hidden::new(folder).map_err(|cause| fail(&cause))?;
     let temporary = hidden.path().join(path.file_name().unwrap_or_default());
     write(&temporary).map_err(|cause| fail(&cause))?;
     std::fs::rename(&temporary, path).map_err(|cause| fail(&cause))
@@ -274,6 +275,26 @@ mod tests {
         std::fs::write(dir.path().join("f"), "").expect("a file in its way");
         assert!(matches!(staged("new").expect_err("a file"), FileError::Write { .. }));
         assert!(dir.path().join("f").is_file(), "the file is gone");
+    }
+
+    #[test]
+    fn leftovers_of_killed_processes_are_removed_and_folders_in_use_are_not() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        let dead = dir.path().join(".rc-partial-dead");
+        let leave = || {
+            std::fs::create_dir(&dead).expect("a folder");
+            std::fs::write(dead.join("gap.png"), "half").expect("a file");
+        };
+        leave();
+        let mut staged = Staged::new(dir.path()).expect("a writable folder");
+        staged.add_text("a.txt", "new").expect("a staged file");
+        assert!(!dead.exists(), "the leftover is still there");
+        leave();
+        check_folder(dir.path()).expect("a writable folder");
+        assert!(!dead.exists(), "the leftover is still there");
+        Staged::new(dir.path()).expect("a second writer").add_text("b.txt", "").expect("a staged file");
+        staged.commit().expect("nobody removed the set in use");
+        assert_eq!(names(dir.path()), ["a.txt"]);
     }
 
     #[test]

@@ -4,12 +4,12 @@ use std::fs::File;
 use std::path::Path;
 
 use crate::error::SweepError;
+use crate::held::{Attempt, Held, attempt};
 
 /// A lock that is held until it is dropped or the process ends.
 #[derive(Debug)]
 pub(crate) struct Lock {
-    #[cfg(unix)]
-    _file: Option<nix::fcntl::Flock<File>>,
+    _held: Option<Held>,
 }
 
 impl Lock {
@@ -19,22 +19,11 @@ impl Lock {
     ///
     /// # Errors
     /// [`SweepError::AnotherProcess`] when another process holds the lock.
-    #[cfg(unix)]
     pub(crate) fn take(file: &File, folder: &Path) -> Result<Self, SweepError> {
-        use nix::errno::Errno;
-        use nix::fcntl::{Flock, FlockArg};
-        let Ok(file) = file.try_clone() else { return Ok(Self { _file: None }) };
-        match Flock::lock(file, FlockArg::LockExclusiveNonblock) {
-            Ok(file) => Ok(Self { _file: Some(file) }),
-            Err((_, Errno::EWOULDBLOCK)) => Err(SweepError::AnotherProcess { folder: folder.to_owned() }),
-            Err(_) => Ok(Self { _file: None }),
+        match file.try_clone().map(attempt) {
+            Ok(Attempt::Held(held)) => Ok(Self { _held: Some(held) }),
+            Ok(Attempt::ByAnother) => Err(SweepError::AnotherProcess { folder: folder.to_owned() }),
+            Ok(Attempt::NoLocks) | Err(_) => Ok(Self { _held: None }),
         }
-    }
-
-    /// Returns without a lock, because the system has no such locks.
-    #[cfg(not(unix))]
-    #[expect(clippy::unnecessary_wraps, reason = "the same signature on every system")]
-    pub(crate) fn take(_file: &File, _folder: &Path) -> Result<Self, SweepError> {
-        Ok(Self {})
     }
 }

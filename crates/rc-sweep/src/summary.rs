@@ -21,8 +21,11 @@ use crate::warning::Warning;
 pub struct Summary {
     /// `converged`, `full_contact` or `not_converged`.
     pub status: String,
-    /// Prescribed quantity, `pressure` or `penetration`.
+    /// Prescribed quantity, `pressure`, `penetration` or `force`. In sweeps, a force is given as its pressure.
     pub control: String,
+    /// The prescribed force (N). It exists only where a force is prescribed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force: Option<f64>,
     /// Kernel, for example `love` or `spectral`.
     pub kernel: String,
     /// Method that was used: `adaptive`, `uniform` or `gauss-seidel`.
@@ -177,6 +180,9 @@ pub struct Summary {
     /// Origin of the heights, if they are from a file of a map.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<MapOrigin>,
+    /// Material of the other body, if both bodies are elastic.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub second_body: Option<SecondBody>,
     /// Doubts about the input and the result.
     ///
     /// Summaries of older versions have none.
@@ -192,6 +198,15 @@ pub struct Summary {
     pub threads: usize,
     /// Version of rc.
     pub version: String,
+}
+
+/// The elastic constants of the other body.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SecondBody {
+    /// Young's modulus (Pa).
+    pub young: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
 }
 
 /// Information for a summary besides the solution.
@@ -245,6 +260,11 @@ fn as_given<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<
     Option::deserialize(deserializer).map(Some)
 }
 
+/// A value that is not infinite.
+fn finite(value: f64) -> Option<f64> {
+    Some(value).filter(|value| value.is_finite())
+}
+
 /// Conductance for unit conductivity and its error (1/m). There is none in full contact.
 fn conductance(solution: &Solution<'_>, units: Units) -> [Option<f64>; 2] {
     // A conductance in 1/λ is a stiffness in E*/λ per E*.
@@ -257,18 +277,17 @@ impl Summary {
     /// The summary of `solution` in SI units. Its memory is the peak of the process so far.
     #[must_use]
     pub fn of(solution: &Solution<'_>, units: Units, context: &SolveContext) -> Self {
-        let (info, observables, grid) = (solution.info(), solution.observables(), solution.grid());
-        let stiffness = units.pascals_per_metre(solution.stiffness());
-        let [conductance, error_of_conductance] = conductance(solution, units);
-        let [tolerance, energy_tolerance] = tolerances(solution.bound());
+        let (info, [tolerance, energy_tolerance]) = (solution.info(), tolerances(solution.bound()));
+        let (observables, [of_spots, error_of_spots]) = (solution.observables(), conductance(solution, units));
         let friction = context.slides.then(|| friction(solution));
         Self {
             status: solution.status().name().to_owned(),
             control: context.control.key().to_owned(),
+            force: None,
             kernel: solution.kernel().to_owned(),
             method: solution.method().name().to_owned(),
             method_reason: Some(solution.reason().to_string()),
-            grid: [grid.nx(), grid.ny()],
+            grid: [solution.grid().nx(), solution.grid().ny()],
             border_level: Some(context.border_level),
             elements: solution.n_elements(),
             levels: info.levels.len(),
@@ -280,7 +299,7 @@ impl Summary {
             area_fraction: observables.area.fraction,
             area_fraction_cells: observables.area.cells,
             area_fraction_error: observables.area.error,
-            hardness: Some(solution.hardness()).filter(|hardness| hardness.is_finite()).map(|h| units.pascals(h)),
+            hardness: finite(solution.hardness()).map(|h| units.pascals(h)),
             plastic_area_fraction: observables.plastic.map(|plastic| plastic.fraction),
             plastic_area_fraction_error: observables.plastic.map(|plastic| plastic.error),
             mean_plastic_gap: observables.plastic.map(|plastic| units.metres(plastic.mean_gap)),
@@ -291,10 +310,10 @@ impl Summary {
             max_pressure: units.pascals(observables.max_pressure),
             mean_gap: units.metres(observables.mean_gap),
             mean_gap_error: Some(units.metres(observables.mean_gap_error)),
-            contact_stiffness: Some(stiffness).filter(|value| value.is_finite()),
-            contact_conductance: conductance,
-            contact_conductance_error: error_of_conductance,
-            conductance: context.conductivity.map(|of_bodies| conductance.map(|per_unit| per_unit * of_bodies)),
+            contact_stiffness: finite(units.pascals_per_metre(solution.stiffness())),
+            contact_conductance: of_spots,
+            contact_conductance_error: error_of_spots,
+            conductance: context.conductivity.map(|of_bodies| of_spots.map(|per_unit| per_unit * of_bodies)),
             friction: friction.map(|friction| friction.coefficient),
             friction_error: friction.map(|friction| friction.error),
             friction_bound: friction.map(|friction| friction.bound),
@@ -320,6 +339,7 @@ impl Summary {
             operator_applications: info.fine_operator_applications(),
             leakage: None,
             source: None,
+            second_body: None,
             warnings: Vec::new(),
             wall_seconds: context.wall.as_secs_f64(),
             peak_memory_bytes: memory::peak(),
@@ -330,7 +350,8 @@ impl Summary {
 
     /// The summary as the cells of a row.
     ///
-    /// The cell `warnings` has the codes of the warnings. There is no `source`. The cells of a flow are `permeance_x`, `permeance_y`, their
+    /// The cell `warnings` has the codes of the warnings. There is no `source` and no
+    /// `second_body`. The cells of a flow are `permeance_x`, `permeance_y`, their
     /// errors (all in m³), and `percolates` (along x and along y).
     ///
     /// # Panics
@@ -346,6 +367,7 @@ impl Summary {
         }
         cells.insert("warnings".to_owned(), codes.into());
         cells.shift_remove("source");
+        cells.shift_remove("second_body");
         if let (Some(leakage), Some(_)) = (&self.leakage, cells.shift_remove("leakage")) {
             cells.extend(leakage.cells().map(|(column, value)| (column.to_owned(), value)));
         }

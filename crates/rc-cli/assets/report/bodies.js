@@ -71,6 +71,6 @@ function bodySections(surface, fields, view, sides) {
   const charts = surface.sections.map((exact) => bodySection(exact, fields, place, view));
   const note = "Heights are from the undeformed elastic surface, and enlarged against x and y. The first sections go through the maximum "
     + "pressure, with at most 1000 points where the gap is smallest. A slider, or a click in a map, chooses other sections, of the pixels "
-    + "of the maps.";
+    + "of the maps." + (surface.of_blocks ? " Heights are means over blocks (output_grid), and touched blocks are called contact." : "");
   return make("section", {}, make("h2", {}, "Section through both bodies"), make("div", { class: "columns wide" }, ...charts), make("p", { class: "quiet" }, note));
 }

@@ -46,6 +46,14 @@ class Axis {
 
 let charts = 0;
 
+/** Length of a line in a legend: two periods of the longest dashes. */
+const SWATCH = 38;
+
+/** The dashes of a series, in its curve and in legends. */
+function dashes({ dashed }) {
+  return dashed ? { "stroke-dasharray": dashed === true ? "6 4" : dashed } : {};
+}
+
 /**
  * A chart of `series` ({ name, points, colour, kind: "line" | "steps" | "dots" | "fill" | "bars", dashed, faint }) on axes `x`
  * and `y` ({ label, unit, log, from, to }). Points of bars are [x, y, error of x, error of y]; `dashed` may be the lengths of
@@ -91,10 +99,8 @@ class Chart {
     const lines = shape("g", { "clip-path": `url(#${this.id})` }, ...this.series.map((one) => this.curve(one)));
     this.svg.replaceChildren(clip, ...this.marks(), lines, shape("rect", { ...frame, class: "frame" }));
     const entry = (one) => {
-      const line = make("i");
-      line.style.borderTopColor = one.colour;
-      line.style.borderTopStyle = one.dashed ? "dashed" : "solid";
-      return make("span", {}, line, one.name);
+      const line = shape("line", { x1: 0, x2: SWATCH, y1: 3, y2: 3, stroke: one.colour, "stroke-width": 2, ...dashes(one) });
+      return make("span", {}, shape("svg", { viewBox: `0 0 ${SWATCH} 6`, width: SWATCH, height: 6 }, line), one.name);
     };
     this.legend.replaceChildren(...this.series.filter((one) => one.name).map(entry));
   }
@@ -138,8 +144,7 @@ class Chart {
       [pen, this.last] = ["L", y];
       return step;
     });
-    const dashes = dashed ? { "stroke-dasharray": dashed === true ? "6 4" : dashed } : {};
-    return shape("path", { d: path.join(""), stroke: colour, class: faint ? "series faint" : "series", ...dashes });
+    return shape("path", { d: path.join(""), stroke: colour, class: faint ? "series faint" : "series", ...dashes({ dashed }) });
   }
 
   /** Error bars with caps; an end below a logarithmic axis is below the frame. */

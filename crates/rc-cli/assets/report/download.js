@@ -48,8 +48,8 @@ function chartSvg({ svg, series }) {
   const [width, height] = [CHART.width, CHART.height - top];
   const colour = (one) => (one.colour.startsWith("var(") ? style.getPropertyValue(one.colour.slice(4, -1)) : one.colour);
   const legend = named.flatMap((one, i) => [
-    shape("line", { x1: CHART.left, x2: CHART.left + 24, y1: top + row * (i + 0.6), y2: top + row * (i + 0.6), stroke: colour(one), "stroke-width": 2, ...(one.dashed ? { "stroke-dasharray": "6 4" } : {}) }),
-    shape("text", { x: CHART.left + 32, y: top + row * (i + 0.6) + 4, fill: style.color, "font-size": 12 }, one.name),
+    shape("line", { x1: CHART.left, x2: CHART.left + SWATCH, y1: top + row * (i + 0.6), y2: top + row * (i + 0.6), stroke: colour(one), "stroke-width": 2, ...dashes(one) }),
+    shape("text", { x: CHART.left + SWATCH + 8, y: top + row * (i + 0.6) + 4, fill: style.color, "font-size": 12 }, one.name),
   ]);
   copy.prepend(shape("rect", { x: 0, y: top, width, height, fill: style.backgroundColor }), ...legend);
   for (const [name, value] of Object.entries({ viewBox: `0 ${top} ${width} ${height}`, width, height, "font-family": "system-ui, sans-serif" })) {

@@ -16,7 +16,8 @@ function sweepChart(title, { scenes }, x, y, more = []) {
     const pick = (rows) => rows.map((row) => [row[x.key], row[y.key]]);
     const several = seeds.length > 1;
     const thin = several ? seeds.map((rows) => ({ name: "", points: pick(rows), ...style, faint: true })) : [];
-    const label = several ? `${name ? `${name}: ` : ""}mean of ${seeds.length} surfaces` : name;
+    // The text below the charts says that lines of scenes are means.
+    const label = several && scenes.length === 1 ? `mean of ${seeds.length} surfaces` : name;
     if (mean.length === 0) return [...thin, { name, points: [], ...style }];
     const bars = mean.map((row) => [row[x.key], row[y.key], row[`${x.key}_error`], row[`${y.key}_error`]]);
     return [

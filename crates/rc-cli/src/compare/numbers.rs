@@ -5,7 +5,7 @@ use rc_sweep::{Cells, Summary};
 use serde::Serialize;
 
 use crate::curves::columns::{bar_of, is_result, number, unit_of};
-use crate::study::record::words;
+use crate::study::record::{words, words_with_error};
 
 /// Ratio of a bar or a difference to its value below which it is rounding.
 const ROUNDING: f64 = 1e-12;
@@ -56,7 +56,7 @@ impl Compared {
         let with_bar = |value: Option<f64>, bar: Option<f64>| {
             let Some(value) = value else { return dash() };
             match bar.filter(|bar| *bar > ROUNDING * value.abs()) {
-                Some(bar) => format!("{} ± {}", of(value), words(two_digits(bar), self.unit)),
+                Some(bar) => words_with_error(value, bar, self.unit),
                 None => of(value),
             }
         };
@@ -71,10 +71,6 @@ impl Compared {
             self.bars.map_or_else(dash, |bars| digits(bars, 2)),
         ]
     }
-}
-
-fn two_digits(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 #[cfg(test)]
@@ -94,7 +90,7 @@ mod tests {
         let bars = 0.25 / f64::hypot(0.3, 0.225);
         assert!((area.bars.expect("bars") + bars).abs() < 1e-12, "{area:?}");
         // 0.3 times 0.75 is a little less than 0.225.
-        assert_eq!(area.line(), ["area fraction", "1 ± 0.3", "0.75 ± 0.22", "-0.25", "-25 %", "-0.67"]);
+        assert_eq!(area.line(), ["area fraction", "1.00 ± 0.30", "0.75 ± 0.22", "-0.25", "-25 %", "-0.67"]);
         let pressure = Compared::of("max_pressure", &a, &b);
         assert_eq!(pressure.line(), ["max pressure", "2 MPa", "2 MPa", "0 Pa", "0 %", "-"]);
         assert_eq!(Compared::of("hardness", &a, &b).line()[1..], ["-"; 5]);

@@ -10,7 +10,7 @@ use super::columns::{PRESSURE, QUANTITIES, Quantity, bar_of, is_result, number};
 use super::means::{AtLoad, Mean};
 use super::table::{Row, SweepTable};
 use crate::error::CliError;
-use crate::study::record::words;
+use crate::study::record::{words, words_with_error};
 
 /// File of the means in the folder of `--out`.
 const MEANS_FILE: &str = "means.csv";
@@ -98,17 +98,10 @@ fn head(quantity: &Quantity) -> &'static str {
     quantity.words.split(',').next().unwrap_or_default()
 }
 
-/// A mean with its standard error, such as `15.1 µm ± 0.2 µm`.
+/// A mean with its standard error, such as `15.10 ± 0.20 µm`.
 pub(crate) fn cell(quantity: &Quantity, mean: Mean) -> String {
-    let of = |value| words(value, quantity.unit);
-    mean.standard_error
-        .map_or_else(|| of(mean.value), |error| format!("{} ± {}", of(mean.value), rounded(error, quantity.unit)))
-}
-
-/// An error with two digits.
-fn rounded(error: f64, unit: &'static str) -> String {
-    let two = format!("{error:.1e}").parse().unwrap_or(error);
-    words(two, unit)
+    let unit = quantity.unit;
+    mean.standard_error.map_or_else(|| words(mean.value, unit), |error| words_with_error(mean.value, error, unit))
 }
 
 /// Lines of cells in columns as wide as their longest cell.

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use rc_core::quantity::{digits, engineering};
-use rc_fractal::{gaussian_mean_line, spectra_of_profile};
-use rc_heights::{ProfileParameters, ReadNote, pairs};
+use rc_fractal::{LEAST_POINTS, gaussian_mean_line, spectra_of_profile};
+use rc_heights::{ProfileParameters, ReadNote, mean_width_of_elements, pairs};
 use rc_sweep::files::Staged;
 use rc_sweep::{Warning, files, to_json};
 use serde::Serialize;
@@ -63,6 +63,9 @@ struct Filtered {
     rp: f64,
     rv: f64,
     rt: f64,
+    /// Mean width of the elements; `None` if there is no whole one.
+    #[serde(rename = "RSm")]
+    rsm: Option<f64>,
 }
 
 /// The parameters without a filter.
@@ -77,19 +80,21 @@ struct Unfiltered {
     pp: f64,
     pv: f64,
     pt: f64,
+    #[serde(rename = "PSm")]
+    psm: Option<f64>,
 }
 
-impl From<ProfileParameters> for Filtered {
-    fn from(of: ProfileParameters) -> Self {
+impl Filtered {
+    fn new(of: ProfileParameters, rsm: Option<f64>) -> Self {
         let ProfileParameters { a, q, sk, ku, p, v, z, t } = of;
-        Self { ra: a, rq: q, rz: z, rsk: sk, rku: ku, rp: p, rv: v, rt: t }
+        Self { ra: a, rq: q, rz: z, rsk: sk, rku: ku, rp: p, rv: v, rt: t, rsm }
     }
 }
 
-impl From<ProfileParameters> for Unfiltered {
-    fn from(of: ProfileParameters) -> Self {
+impl Unfiltered {
+    fn new(of: ProfileParameters, psm: Option<f64>) -> Self {
         let ProfileParameters { a, q, sk, ku, p, v, z, t } = of;
-        Self { pa: a, pq: q, pz: z, psk: sk, pku: ku, pp: p, pv: v, pt: t }
+        Self { pa: a, pq: q, pz: z, psk: sk, pku: ku, pp: p, pv: v, pt: t, psm }
     }
 }
 
@@ -102,16 +107,30 @@ pub(super) fn shown(args: &InspectArgs, profile: &Profile) -> Result<String, Cli
     refuse(&record.warnings, args.strict, "; nothing was written")?;
     tell(&record.warnings, &args.run_keys());
     if let Some(path) = &args.psd_out {
+        if record.spectrum.is_empty() {
+            let message = format_args!("a profile of {} points has no spectrum; omit --psd-out", record.points);
+            return Err(CliError::in_file(&args.file, message));
+        }
         write_psd(path, &record)?;
     }
     if let Some(folder) = &args.out {
         files::check_folder(folder)?;
         let mut staged = Staged::new(folder)?;
         profile_pictures::add(&mut staged, (&profile.heights, profile.spacing), &record.spectrum)?;
-        staged.add(PSD_FILE, |path| pairs::write(path, PSD_TITLES, &record.psd()))?;
+        if !record.spectrum.is_empty() {
+            staged.add(PSD_FILE, |path| pairs::write(path, PSD_TITLES, &record.psd()))?;
+        }
         staged.commit()?;
     }
     Ok(if args.json { to_json(&record) } else { record.text() + &written(args.out.as_deref()) })
+}
+
+/// The text of RSm or PSm.
+fn width_of_elements(value: Option<f64>) -> String {
+    value.map_or_else(
+        || "not defined: there is no whole element of a hill and a dale".to_owned(),
+        |width| format!("{}, mean width of elements", engineering(width, "m")),
+    )
 }
 
 /// Writes the spectrum of the isotropic surface.
@@ -179,6 +198,19 @@ fn roughness(
     Ok((left[..points.min(left.len())].to_vec(), sections))
 }
 
+/// The spectra of a profile; empty for too few points.
+fn spectrum(heights: &[f64], spacing: f64) -> Vec<ProfileRow> {
+    if heights.len() < LEAST_POINTS {
+        return Vec::new();
+    }
+    let row = |row: &rc_fractal::ProfileSpectrumRow| ProfileRow {
+        wavenumber: row.wavenumber,
+        psd_profile: row.along,
+        psd: row.isotropic,
+    };
+    spectra_of_profile(heights, spacing).iter().map(row).collect()
+}
+
 impl ProfileRecord {
     fn of(args: &InspectArgs, profile: &Profile) -> Result<Self, CliError> {
         let Profile { heights, spacing, notes } = profile;
@@ -202,11 +234,23 @@ impl ProfileRecord {
         let shape = Shape { rms_slope, range: h_max - h_min, sides: [profile.length(); 2] };
         let mut warnings: Vec<Warning> = warnings::surface::assumed(&assumed).into_iter().collect();
         warnings.extend(shape.warnings());
-        let row = |row: &rc_fractal::ProfileSpectrumRow| ProfileRow {
-            wavenumber: row.wavenumber,
-            psd_profile: row.along,
-            psd: row.isotropic,
+        // Of a profile without filters, missing points are passed over, but an element goes on beyond them.
+        let is_filtered = args.lambda_s.or(args.lambda_c).is_some();
+        let filtered = ProfileParameters::of(if is_filtered { &kept } else { heights }, sections);
+        let unfiltered = ProfileParameters::of(heights, 1);
+        let width = |heights: &[f64], z: f64, sections: usize| {
+            let section = heights.len() as f64 / sections as f64;
+            mean_width_of_elements(heights, z, section).map(|steps| steps * spacing)
         };
+        let filtered = Filtered::new(filtered, width(&kept, filtered.z, sections));
+        let unfiltered = Unfiltered::new(unfiltered, width(&whole, unfiltered.z, 1));
+        let spectrum = spectrum(&whole, *spacing);
+        if spectrum.is_empty() {
+            notes.push(format!(
+                "{} points have no spectrum, which needs {LEAST_POINTS}; Psk, Pku and the rms slope of so few say little",
+                whole.len()
+            ));
+        }
         Ok(Self {
             points: heights.len(),
             missing,
@@ -220,13 +264,9 @@ impl ProfileRecord {
             lambda_c: args.lambda_c,
             evaluation_length: kept.len() as f64 * spacing,
             sections,
-            filtered: ProfileParameters::of(
-                if args.lambda_s.or(args.lambda_c).is_some() { &kept } else { heights },
-                sections,
-            )
-            .into(),
-            unfiltered: ProfileParameters::of(heights, 1).into(),
-            spectrum: spectra_of_profile(&whole, *spacing).iter().map(row).collect(),
+            filtered,
+            unfiltered,
+            spectrum,
             notes,
             warnings,
         })
@@ -239,8 +279,8 @@ impl ProfileRecord {
 
     fn text(&self) -> String {
         let metres = |value| engineering(value, "m");
-        let Unfiltered { pa, pq, pz, psk, pku, pp, pv, pt } = self.unfiltered;
-        let Filtered { ra, rq, rz, rsk, rku, rp, rv, rt } = self.filtered;
+        let Unfiltered { pa, pq, pz, psk, pku, pp, pv, pt, psm } = self.unfiltered;
+        let Filtered { ra, rq, rz, rsk, rku, rp, rv, rt, rsm } = self.filtered;
         let heights = |kind: &str, values: [f64; 6]| {
             let named = |(name, value): (char, f64)| format!("{kind}{name} {}", metres(value));
             ['a', 'q', 'p', 'v', 'z', 't'].into_iter().zip(values).map(named).collect::<Vec<_>>().join(", ")
@@ -260,11 +300,13 @@ impl ProfileRecord {
             ("rms slope", format!("{} (differences of neighbours)", digits(self.rms_slope, 4))),
             ("P parameters", heights("P", [pa, pq, pp, pv, pz, pt])),
             ("Psk, Pku", format!("{}, {}", digits(psk, 4), digits(pku, 4))),
+            ("PSm", width_of_elements(psm)),
         ];
         if let Some(filters) = self.filters() {
             lines.push(("filters", filters));
             lines.push(("R parameters", heights("R", [ra, rq, rp, rv, rz, rt])));
             lines.push(("Rsk, Rku", format!("{}, {}", digits(rsk, 4), digits(rku, 4))));
+            lines.push(("RSm", width_of_elements(rsm)));
         }
         let note = "\nP: the whole profile about its mean, without a filter (ISO 21920-2). ";
         let more = match self.filters() {

@@ -29,7 +29,8 @@ pub(super) fn add(
     let rows = spectrum.iter().filter(|row| row.psd_profile > 0.0);
     let points = rows.map(|row| (row.wavenumber.log10(), row.psd_profile.log10())).collect();
     let spectrum = Lines { title: "Power spectral density of the profile (Hann window)", points, of: Of::Spectrum };
-    for (name, lines) in [("profile", profile), ("spectrum", spectrum)] {
+    let pictures = [("profile", profile), ("spectrum", spectrum)];
+    for (name, lines) in pictures.into_iter().filter(|(_, lines)| !lines.points.is_empty()) {
         staged.add(&format!("{name}.png"), |path| save_png(&lines, path))?;
         staged.add(&format!("{name}.svg"), |path| save_svg(&lines, path))?;
     }

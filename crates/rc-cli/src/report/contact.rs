@@ -96,6 +96,10 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
     let slides = scene.contact.speed.is_some_and(|speed| speed > 0.0);
     let load = match summary.control.as_str() {
         "penetration" => format!("at a penetration of {}", engineering(summary.penetration, "m")),
+        "force" => {
+            let force = engineering(summary.force.unwrap_or(f64::NAN), "N");
+            format!("under {force}, which are {}", engineering(summary.mean_pressure, "Pa"))
+        }
         _ => format!("under {}", engineering(summary.mean_pressure, "Pa")),
     };
     let (surface, no_surface) = match ResultSurface::of(&scene_path, &result) {

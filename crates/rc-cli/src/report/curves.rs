@@ -15,6 +15,7 @@ use crate::curves::table::{Row, SweepTable};
 use crate::curves::text::cell;
 use crate::curves::theory::{PerssonLine, persson};
 use crate::error::CliError;
+use crate::text;
 use rc_core::quantity::{Scale, count, digits, engineering};
 use rc_sweep::WarningCode;
 
@@ -217,8 +218,19 @@ fn note(scenes: &[SceneCurves], has_theory: bool) -> String {
     } else {
         ""
     };
+    let few = scenes.iter().map(|scene| scene.seeds.len()).filter(|n| *n > 1).min().map_or_else(String::new, of_few);
     format!(
-        "{bars}{theory} Penetration is counted from first touch. Linear axes begin at zero, but logarithmic ones do not."
+        "{bars}{few}{theory} Penetration is counted from first touch. Linear axes begin at zero, but logarithmic ones do not."
+    )
+}
+
+/// A caution about the standard errors of at least two surfaces; empty for many.
+fn of_few(n: usize) -> String {
+    // Student's distribution of n - 1 degrees of freedom from -1 to 1. It is 68 % for a normal distribution.
+    let Some(percent) = [50, 58, 61, 63].get(n - 2) else { return String::new() };
+    format!(
+        " A standard error of {n} surfaces is itself uncertain: the true mean is within it in {percent} % of all cases \
+         (Student), not in 68 %."
     )
 }
 
@@ -255,7 +267,7 @@ fn cells(row: &Row, several: bool) -> Vec<String> {
     cells.extend([
         of("mean_pressure", "Pa"),
         of("penetration", "m"),
-        format!("{} ± {}", digits(area, 4), digits(error, 1)),
+        text::with_error(area, error),
         of("mean_gap", "m"),
         match row.number("contact_stiffness") {
             Some(value) => engineering(value, "Pa/m"),

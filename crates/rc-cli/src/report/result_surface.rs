@@ -8,11 +8,13 @@ use serde::Serialize;
 
 use super::surface::SurfaceBody;
 use crate::error::CliError;
+use crate::files::coarsen::{BlockMean, check_factor};
 use crate::files::result::ResultFolder;
 use crate::inspect::record::SurfaceRecord;
 use crate::scene::keys::Scene;
 use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve;
+use crate::scene::values::GridSpec;
 
 /// Number of elements per side from which a generated surface is sampled on fewer, for its statistics.
 const MOST_SAMPLES: usize = 1024;
@@ -27,8 +29,10 @@ pub(super) struct ResultSurface {
     body: SurfaceBody,
     /// What has to be added to a height (m), so that it is counted from the undeformed elastic surface.
     shift: f64,
-    /// Sections along x and y through the maximum pressure; empty for means over blocks.
+    /// Sections along x and y through the maximum pressure; empty if the heights on the grid of the fields are not known.
     sections: Vec<BodySection>,
+    /// Whether the points of the sections are means over blocks.
+    of_blocks: bool,
     #[serde(skip)]
     nayak: Option<f64>,
 }
@@ -56,13 +60,16 @@ impl ResultSurface {
         let setup = resolve::surface(scene.surface)?.bounded(scene.contact.boundary.unwrap_or_default())?;
         let mut surface = setup.load()?;
         let side = setup.cell.side();
-        let has_elements = result.is_of_elements() && same_elements(surface.grid, result.pressure.grid());
+        let stored = result.pressure.grid();
+        let has_elements = result.is_of_elements() && same_elements(surface.grid, stored);
+        let budget = Budget::new(scene.run.memory_limit);
         let full = has_elements
             .then(|| {
-                Budget::new(scene.run.memory_limit).check_grid("the surface", surface.grid)?;
+                budget.check_grid("the surface", surface.grid)?;
                 surface.heights().map(std::borrow::Cow::into_owned)
             })
             .transpose()?;
+        let blocks = if result.is_of_elements() { None } else { means_over_blocks(&surface, stored, budget) };
         let coarse = sampled(&mut surface)?;
         let heights = full.as_ref().unwrap_or(&coarse);
         if heights.max() <= heights.min() {
@@ -76,14 +83,28 @@ impl ResultSurface {
             ..SurfaceRecord::of_source(&coarse, side, surface.moments(&coarse), source)
         };
         let shift = summary.penetration - summary.h_max;
-        let sections = full.as_ref().map_or_else(Vec::new, |heights| sections(heights, result, shift));
-        Ok(Self { body: SurfaceBody::of(heights, &record), shift, sections, nayak: record.nayak })
+        let of_sections = full.as_ref().or(blocks.as_ref());
+        let sections = of_sections.map_or_else(Vec::new, |heights| sections(heights, result, shift));
+        let (body, of_blocks) = (SurfaceBody::of(heights, &record), blocks.is_some());
+        Ok(Self { body, shift, sections, of_blocks, nayak: record.nayak })
     }
 
     /// Nayak's parameter of the surface.
     pub(super) fn nayak(&self) -> Option<f64> {
         self.nayak
     }
+}
+
+/// The heights (in λ) of a surface, as means over the blocks of the `stored` fields.
+///
+/// `None` if the surface does not have such blocks, or does not fit the memory.
+fn means_over_blocks(surface: &LoadedSurface, stored: Grid, budget: Budget) -> Option<Field> {
+    let spec = GridSpec { nx: stored.nx(), ny: stored.ny() };
+    check_factor(surface.grid, spec).ok()?;
+    budget.check_grid("the surface", surface.grid).ok()?;
+    let mut means = BlockMean::new(surface.grid, spec);
+    means.take(surface.heights().ok()?.values());
+    Some(means.finish())
 }
 
 fn same_elements(a: Grid, b: Grid) -> bool {
@@ -123,7 +144,9 @@ fn sections(heights: &Field, result: &ResultFolder, shift: f64) -> Vec<BodySecti
         ("y", grid.centre(px, py).x, (0..grid.ny()).map(|iy| grid.index(px, iy)).collect()),
     ];
     let section = |(axis, at, line): (&'static str, f64, Vec<usize>)| {
-        let gap = |i: usize| if pressure.values()[i] > 0.0 { 0.0 } else { gap.values()[i] };
+        // A touched block has a mean gap.
+        let is_closed = |i: usize| pressure.values()[i] > 0.0 && result.is_of_elements();
+        let gap = |i: usize| if is_closed(i) { 0.0 } else { gap.values()[i] };
         let kept: Vec<usize> = line
             .chunks(line.len().div_ceil(POINTS))
             .filter_map(|block| block.iter().copied().min_by(|a, b| gap(*a).total_cmp(&gap(*b))))

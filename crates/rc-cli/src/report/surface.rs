@@ -100,7 +100,9 @@ impl SurfaceBody {
 /// Whether the map was made periodic by its mirror images, with nothing that moves them since.
 fn is_mirrored(source: &MapOrigin) -> bool {
     source.treatments.iter().any(|treatment| treatment == "periodic mirror")
-        && !source.treatments.iter().any(|treatment| treatment.starts_with("twin") || treatment.starts_with("repeat"))
+        && !source.treatments.iter().any(|treatment| {
+            treatment.starts_with("twin") || treatment.starts_with("repeat") || treatment.contains(" added")
+        })
 }
 
 /// What the map shows.

@@ -5,6 +5,8 @@ use std::path::Path;
 use rc_sweep::MapOrigin;
 use serde::Deserialize;
 
+use super::form::FormName;
+use super::keys::SurfaceKeys;
 use crate::files::beside;
 
 /// What made a surface of a spectrum, before the number of the seed.
@@ -33,6 +35,24 @@ pub(crate) fn of(path: &Path, channel: Option<&str>) -> MapOrigin {
         source: MapOrigin,
     }
     beside::records(path).next().map_or_else(|| of_file(path, channel), |Record { source }| source)
+}
+
+/// The origin of a map to which the shape and the other body of `keys` are added.
+///
+/// A generated surface has no file, so the origin of its sum is the file of the other body.
+pub(crate) fn with_added(origin: Option<MapOrigin>, keys: &SurfaceKeys) -> Option<MapOrigin> {
+    let Some(mut origin) = origin else {
+        let other = keys.add.as_ref()?;
+        let treatments = vec!["mirrored along x and added to a generated surface".to_owned()];
+        return Some(MapOrigin { treatments, ..of_file(other, None) });
+    };
+    if keys.shape.is_some_and(|shape| shape != FormName::Flat) {
+        origin.treatments.push("shape added".to_owned());
+    }
+    if let Some(other) = &keys.add {
+        origin.treatments.push(format!("{} added, mirrored along x", other.display()));
+    }
+    Some(origin)
 }
 
 fn of_file(path: &Path, channel: Option<&str>) -> MapOrigin {

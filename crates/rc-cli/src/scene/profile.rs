@@ -25,7 +25,7 @@ impl Profile {
     /// Reads a profile. `None` for any other file, which is that of a map.
     ///
     /// # Errors
-    /// [`CliError::Input`] when points are too few, not finite, not equally spaced along x, or without a step.
+    /// [`CliError::Input`] when points are not finite, not equally spaced along x, or without a step.
     pub(crate) fn read(path: &Path, keys: &SurfaceKeys) -> Result<Option<Self>, CliError> {
         let params = keys.read_params();
         if path.is_dir() || keys.layout == Some(Layout::Matrix) || !has_profile(path, &params).unwrap_or(false) {
@@ -34,7 +34,6 @@ impl Profile {
         let params = ReadParams { is_profile: true, ..params };
         let map = heights::read(path, &params, keys.scales())?;
         let n = map.heights.values().len();
-        check_number(path, n)?;
         let given = keys.cell.filter(|_| map.sides.is_none() || map.sides_are_assumed());
         let Some(length) = given.or(map.sides.map(|[length, _]| length)) else {
             return Err(CliError::in_file(path, "a profile without places; give cell (m), the length of the profile"));
@@ -45,8 +44,9 @@ impl Profile {
     /// The profile without missing points.
     ///
     /// # Errors
-    /// [`CliError::Input`] with the first missing point.
+    /// [`CliError::Input`] with the first missing point, or when points are too few for a spectrum.
     pub(crate) fn complete(self, path: &Path) -> Result<Self, CliError> {
+        check_number(path, self.heights.len())?;
         match self.heights.iter().position(|height| !height.is_finite()) {
             None => Ok(self),
             Some(i) => Err(CliError::in_file(
@@ -71,7 +71,6 @@ impl Profile {
             return Ok(None);
         }
         let heights = map.heights.values().to_vec();
-        check_number(path, heights.len())?;
         let Some(sides) = map.sides else {
             let message = "a profile whose points have no distance; give a text of lines x z";
             return Err(CliError::in_file(path, message));

@@ -226,6 +226,13 @@ impl SurfaceSetup {
         if let Some((what, grid)) = self.evaluated() {
             budget.check_grid(what, grid)?;
         }
+        let mut surface = self.read_or_made()?;
+        surface.origin = origin::with_added(surface.origin, &self.keys);
+        Ok(surface)
+    }
+
+    /// The surface with what is added to it, which its origin does not tell yet.
+    fn read_or_made(&self) -> Result<LoadedSurface, CliError> {
         match &self.source {
             Source::File { path, expected, params, scales } => {
                 let held = self.held.lock().unwrap_or_else(PoisonError::into_inner).take();

@@ -10,7 +10,7 @@ use rc_heights::npy::{Precision, RowWriter};
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution};
 use rc_sweep::files::{FileError, Staged};
-use rc_sweep::{MapOrigin, SolveContext, Summary, Warning};
+use rc_sweep::{MapOrigin, SecondBody, SolveContext, Summary, Warning};
 
 use super::leakage::SolvedFlow;
 use super::map_file::MapFile;
@@ -88,7 +88,11 @@ impl ResultFiles<'_> {
         let leakage = self.flow.map(|flow| flow.summary.clone());
         let summary = Summary::of(self.solution, self.contact.units, &context);
         let warnings = self.all_warnings();
-        Summary { leakage, warnings, source: self.origin.cloned(), ..summary }
+        let keys = &self.contact.keys;
+        let second_body = keys.young2.zip(keys.poisson2).map(|(young, poisson)| SecondBody { young, poisson });
+        let control = if keys.force.is_some() { "force".to_owned() } else { summary.control };
+        let (force, source) = (keys.force, self.origin.cloned());
+        Summary { control, force, leakage, warnings, source, second_body, ..summary }
     }
 
     /// The warnings from before the solve, and those that only the solution shows.

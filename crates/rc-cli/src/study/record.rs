@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use rc_core::quantity::{count, digits, engineering};
+use rc_core::quantity::{Scale, count, digits, engineering};
 use rc_heights::Treatment;
 use rc_sweep::{Cells, MapOrigin, SweepRows};
 use serde::{Deserialize, Serialize};
@@ -83,6 +83,38 @@ pub(crate) fn words(value: f64, unit: &'static str) -> String {
     }
 }
 
+/// Relative error below which a value has only errors of rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// `value` and `error` in the words of a table, in one unit: `178.6 ± 1.1 µm`, `(1.2 ± 0.3)e-20 m³`.
+///
+/// The error has two digits, and the value ends at the same place. An error of rounding is called so.
+pub(crate) fn words_with_error(value: f64, error: f64, unit: &'static str) -> String {
+    if !error.is_finite() || !value.is_finite() {
+        return words(value, unit);
+    }
+    if error <= ROUNDING * value.abs() {
+        return format!("{} ± rounding", words(value, unit));
+    }
+    let largest = value.abs().max(error);
+    let has_prefix = !unit.is_empty() && takes_prefix(unit);
+    let power = if has_prefix || (1e-3..1e6).contains(&largest) { 0 } else { largest.log10().floor() as i32 };
+    let scale = Scale::of(largest, unit);
+    let (factor, shown) = if has_prefix { (scale.factor, scale.unit()) } else { (10_f64.powi(power), unit.to_owned()) };
+    // The digits of the error after rounding, and the place of the last one, from 10^0 down.
+    let two = format!("{:.1e}", error / factor);
+    let exponent: i32 = two.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0);
+    let place = 1 - exponent;
+    let text = |value: f64| {
+        let step = 10_f64.powi(-place.min(0));
+        let whole = if place < 0 { (value / factor / step).round() * step } else { value / factor };
+        format!("{whole:.*}", place.max(0) as usize)
+    };
+    let both = format!("{} ± {}", text(value), text(error));
+    let both = if power != 0 { format!("({both})e{power}") } else { both };
+    format!("{both} {shown}").trim_end().to_owned()
+}
+
 impl StudyRecord {
     /// The record in `folder`; `None` if there is none.
     ///
@@ -125,4 +157,30 @@ fn line(range: &Range) -> String {
     let by = format!("{} to {}", range.low_by, range.high_by);
     let (low, high) = (of(range.treatment_low), of(range.treatment_high));
     format!("  {:<24}{:<14}{bar:<14}{low:<16}{high:<16}{by}\n", range.result, of(range.value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_ends_where_its_error_does() {
+        for (value, error, unit, expected) in [
+            (178.64e-6, 10.96e-6, "m", "179 ± 11 µm"),
+            (6.16e9, 0.83e9, "Pa/m", "6.16 ± 0.83 GPa/m"),
+            (25.86e-6, 2.5e-6, "m", "25.9 ± 2.5 µm"),
+            (188.3e-6, 12e-9, "m", "188.300 ± 0.012 µm"),
+            (0.5, 0.03, "", "0.500 ± 0.030"),
+            (0.007_555, 0.000_94, "", "0.00756 ± 0.00094"),
+            (599.2, 129.0, "1/m", "600 ± 130 1/m"),
+            (1.234e-20, 3.4e-21, "m³", "(1.23 ± 0.34)e-20 m³"),
+            (4.7e-9, 13.8e-9, "m", "5 ± 14 nm"),
+            (0.999, 0.0996, "", "1.00 ± 0.10"),
+            (1e5, 5.9e-12, "Pa", "100 kPa ± rounding"),
+            (1e5, 0.0, "Pa", "100 kPa ± rounding"),
+            (1e5, f64::NAN, "Pa", "100 kPa"),
+        ] {
+            assert_eq!(words_with_error(value, error, unit), expected);
+        }
+    }
 }

@@ -25,7 +25,11 @@ use crate::run::threads;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene};
 use crate::scene::{origin, resolve, written};
 use crate::surface::treated;
+use crate::sweep::interrupt::WriteRows;
 use crate::sweep::solved::{self, HowRows, SolvedRows};
+
+/// Table of the rows of all treatments.
+const TABLE_FILE: &str = "study.csv";
 
 /// Folder of the rows in that of the study.
 const ROWS_FOLDER: &str = "sweep";
@@ -131,10 +135,12 @@ pub(super) fn run(args: StudyArgs, stop: Option<&dyn Observer>) -> Result<Solved
     let folder = run.out.clone().unwrap_or_else(|| PathBuf::from("."));
     files::check_folder(&folder)?;
     let resume = args.resume;
-    let study = Study::new(args, scene)?;
+    let study = Arc::new(Study::new(args, scene)?);
     let plan = study.rows.plan(&study.pressures)?;
     let sweep = Arc::new(Sweep::start(plan, Shard::WHOLE, &folder.join(ROWS_FOLDER), resume)?);
-    let how = HowRows { run: &run, threads: n_threads, max_elements: study.max_elements, stop };
+    let at_interrupt = study.written_into(&folder);
+    let (max_elements, at_interrupt) = (study.max_elements, Some(&at_interrupt));
+    let how = HowRows { run: &run, threads: n_threads, max_elements, stop, at_interrupt };
     let ended = solved::rows(&study.rows, &sweep, how);
     let kept = sweep.kept();
     let rows = kept.rows().clone();
@@ -192,6 +198,15 @@ impl Study {
         let max_elements = distinct.max_elements(&contact);
         let rows = StudyRows::new(read, distinct.solved.clone(), contact, budget, Pictures { folder, pressure });
         Ok(Self { rows, distinct, pressures, max_elements, source, command })
+    }
+
+    /// What writes the files of the rows that are finished into `folder`.
+    fn written_into(self: &Arc<Self>, folder: &Path) -> Arc<WriteRows> {
+        let (study, folder) = (Arc::clone(self), folder.to_owned());
+        Arc::new(move |rows: &SweepRows| {
+            write(&folder, &study.record(rows))?;
+            Ok(folder.join(TABLE_FILE))
+        })
     }
 
     fn record(&self, solved: &SweepRows) -> StudyRecord {
@@ -261,12 +276,12 @@ fn refused_force(force: f64, [x, y]: [f64; 2]) -> CliError {
     ))
 }
 
-/// Writes `study.csv`, `study.json` and the page.
+/// Writes the table, `study.json` and the page.
 fn write(folder: &Path, record: &StudyRecord) -> Result<(), CliError> {
     let rows: SweepRows = record.rows.iter().cloned().enumerate().collect();
-    let csv = to_csv(&rows).map_err(|cause| CliError::write(&folder.join("study.csv"), cause))?;
+    let csv = to_csv(&rows).map_err(|cause| CliError::write(&folder.join(TABLE_FILE), cause))?;
     let mut staged = Staged::new(folder)?;
-    staged.add("study.csv", |path| files::write_synced(path, &csv))?;
+    staged.add(TABLE_FILE, |path| files::write_synced(path, &csv))?;
     staged.add_text(STUDY_FILE, &to_json(record))?;
     staged.add_text(PAGE_FILE, &report::of_study(folder, record))?;
     Ok(staged.commit()?)

@@ -49,7 +49,7 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
     let n_before = ensemble.kept().rows().len();
     let bar = RowBar::new(n_before, n_before, run.quiet);
     let handled = (Arc::clone(&ensemble), bar.clone());
-    interrupt::install(move || interrupt::end(&handled.0.kept(), None, &handled.1));
+    interrupt::install(move || interrupt::end(&handled.0.kept(), None, &handled.1, None));
     let doubts = Doubts::default();
     let budget = Budget::new(run.memory_limit);
     let realisations = Realisations { surface, control };

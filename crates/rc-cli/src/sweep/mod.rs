@@ -4,7 +4,7 @@ pub(crate) mod args;
 mod bar;
 mod creep;
 mod doubts;
-mod interrupt;
+pub(crate) mod interrupt;
 mod list;
 mod map_mark;
 mod mean;
@@ -74,7 +74,8 @@ fn execute(surfaces: &Surfaces, sweep: &Arc<Sweep>, (shard, folder): (Shard, &Pa
     let (started, threads) = (Instant::now(), surfaces.threads);
     let n_rows = sweep.n_rows();
     let n_before = n_rows - sweep.todo().len();
-    let how = HowRows { run: &surfaces.run, threads, max_elements: surfaces.max_elements(), stop: None };
+    let how =
+        HowRows { run: &surfaces.run, threads, max_elements: surfaces.max_elements(), stop: None, at_interrupt: None };
     let solved = solved::rows(surfaces, sweep, how)?;
     let whole = shard == Shard::WHOLE && sweep.kept().rows().len() == n_rows;
     let sealing = if whole && surfaces.leak() {

@@ -17,6 +17,7 @@ use crate::scene::keys::ContactKeys;
 use crate::scene::loaded::LoadedSurface;
 use crate::solve::leakage::open_gap;
 use crate::solve::solved::{ProblemSetup, SolvedParts};
+use crate::study::record::words_with_error;
 
 /// File of the sealing pressures in the folder of a sweep.
 pub(crate) const SEALING_FILE: &str = "sealing.json";
@@ -229,11 +230,12 @@ impl Problem {
             return format!("sealing pressure{name}: {axes}\n");
         }
         let n = self.surfaces.len() / AXES.len();
-        let error = self.standard_error.map_or_else(String::new, |error| format!(" ± {}", pressure(error)));
+        let of_mean =
+            |mean| self.standard_error.map_or_else(|| pressure(mean), |error| words_with_error(mean, error, "Pa"));
         match (self.pressure, self.bracket) {
             (Some(mean), Some([low, high])) => {
                 let range = format!("from {} to {}", pressure(low), pressure(high));
-                format!("sealing pressure{name}: {}{error}, mean of {n} surfaces, {range}\n", pressure(mean))
+                format!("sealing pressure{name}: {}, mean of {n} surfaces, {range}\n", of_mean(mean))
             }
             _ => format!(
                 "sealing pressure{name}: some of {n} surfaces are open or closed at all loads, see {SEALING_FILE}\n"

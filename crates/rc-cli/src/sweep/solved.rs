@@ -9,10 +9,11 @@ use rc_sweep::{Sweep, SweepRow, SweepRows, Warning, Workers};
 
 use super::bar::RowBar;
 use super::doubts::Doubts;
+use super::interrupt::{self, WriteRows};
+use super::messages;
 use super::problems::{RowScenes, SceneProblems};
 use super::results::Results;
 use super::rows::SweepResults;
-use super::{interrupt, messages};
 use crate::error::CliError;
 use crate::scene::keys::RunKeys;
 
@@ -26,6 +27,8 @@ pub(crate) struct HowRows<'a> {
     pub(crate) max_elements: f64,
     /// Says when no further row is begun, in a program that sees to interrupts itself.
     pub(crate) stop: Option<&'a dyn Observer>,
+    /// Writes more than the table when the process is interrupted.
+    pub(crate) at_interrupt: Option<&'a Arc<WriteRows>>,
 }
 
 /// What solving the rows left, besides the rows.
@@ -42,13 +45,13 @@ pub(crate) struct SolvedRows {
 pub(crate) fn rows<S: RowScenes<SweepRow>>(
     scenes: &S,
     sweep: &Arc<Sweep>,
-    HowRows { run, threads, max_elements, stop }: HowRows<'_>,
+    HowRows { run, threads, max_elements, stop, at_interrupt }: HowRows<'_>,
 ) -> Result<SolvedRows, CliError> {
     let n_rows = sweep.n_rows();
     let bar = RowBar::new(n_rows - sweep.todo().len(), n_rows, run.quiet);
     if stop.is_none() {
-        let handled = (Arc::clone(sweep), bar.clone());
-        interrupt::install(move || interrupt::end(&handled.0.kept(), Some(n_rows), &handled.1));
+        let (sweep, bar, write) = (Arc::clone(sweep), bar.clone(), at_interrupt.cloned());
+        interrupt::install(move || interrupt::end(&sweep.kept(), Some(n_rows), &bar, write.as_deref()));
     }
     let doubts = Doubts::default();
     let budget = Budget::new(run.memory_limit);

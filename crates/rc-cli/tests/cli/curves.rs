@@ -41,7 +41,10 @@ fn the_page_has_maps_of_every_row_under_one_scale_and_the_theory() {
     let slope = place.json("sw/rows/0001/summary.json")["rms_slope"].as_f64().expect("a slope");
     let expected = (8.0 / std::f64::consts::PI).sqrt() * pressure * (1.0 - 0.45 * 0.45) / (0.4e9 * slope);
     assert!((area / expected - 1.0).abs() < 0.05, "{area} instead of {expected}");
+    let note = page["note"].as_str().expect("a note");
     let mean = &page["scenes"][0]["mean"][0];
+    let n_seeds = page["scenes"][0]["seeds"].as_array().map(Vec::len);
+    assert_eq!(n_seeds == Some(2), note.contains("within it in 50 % of all cases"), "{n_seeds:?}: {note}");
     assert!(mean["area_error"].as_f64().expect("an error") > 0.0, "{mean}");
 }
 

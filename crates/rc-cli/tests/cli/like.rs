@@ -154,6 +154,16 @@ fn shapes_and_other_bodies_are_added_to_measured_surfaces() {
             run(format!("solve {surface} {added} --boundary free --e-star 1GPa --force 1mN --quiet --out sum"));
             run("solve sum --quiet --out again".into());
             assert!(place.bytes("sum/pressure.npy") == place.bytes("again/pressure.npy"), "{surface} {added}");
+            let (of_sum, of_again) = (place.json("sum/summary.json"), place.json("again/summary.json"));
+            assert_eq!((&of_sum["control"], &of_sum["force"]), (&"force".into(), &1e-3.into()), "{surface} {added}");
+            assert_eq!((&of_again["control"], &of_again["force"]), (&of_sum["control"], &of_sum["force"]));
+            let treatments = of_sum["source"]["treatments"].to_string();
+            let told =
+                if added.contains("--add") { format!("{other} added, mirrored along x") } else { "shape added".into() };
+            assert!(treatments.contains(&told), "{surface} {added}: {treatments}");
+            if of_sum["source"]["file"] == "map.npy" {
+                assert_eq!(of_again["source"], of_sum["source"], "{surface} {added}");
+            }
         }
     }
 }

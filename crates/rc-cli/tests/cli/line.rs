@@ -129,7 +129,9 @@ fn a_profile_has_the_parameters_of_the_standard_with_and_without_filters() {
     };
     let plain = inspect(&[]);
     assert_close("Rq", number(&plain, "Rq"), (0.5e-12_f64 + 0.5 * 2.5e-15).sqrt(), 1e-3);
-    assert_eq!(plain["Ra"], plain["Pa"]);
+    assert_eq!((&plain["Ra"], &plain["RSm"]), (&plain["Pa"], &plain["PSm"]));
+    // The short wave is lower than a tenth of the profile.
+    assert_close("PSm", number(&plain, "PSm"), 0.8e-3, 1e-2);
     // The short wave keeps 1 - 2^-(λc/λ)² of its amplitude, which is all, and the long one 1 - 2^-(1/16).
     let fine = inspect(&["--lambda-c", "0.2mm", "--psd-out", "psd.csv", "--out", "look"]);
     let kept = 1.0 - 0.5_f64.powf((0.2_f64 / 0.8).powi(2));
@@ -149,6 +151,7 @@ fn a_profile_has_the_parameters_of_the_standard_with_and_without_filters() {
     let smooth = inspect(&["--lambda-s", "80um"]);
     let left = 0.5_f64.powf((0.08_f64 / 0.8).powi(2));
     assert_close("Rq", number(&smooth, "Rq"), left * 1e-6 / 2.0_f64.sqrt(), 2e-3);
+    assert_close("RSm", number(&smooth, "RSm"), 0.8e-3, 1e-2);
     for (key, value) in [("Ra", 2.0 / PI), ("Rz", 2.0)] {
         assert_close(key, number(&smooth, key), left * 1e-6 * value, 5e-3);
     }
@@ -183,6 +186,26 @@ fn holes_and_units_of_a_profile_are_told() {
     let bare: Vec<f64> = (0..40).map(|i| f64::from(i * i % 11)).collect();
     place.write("bare.npy", npy("<f8", false, "(40, 1)", &f8(&bare.iter().map(|h| *h as f32).collect::<Vec<_>>())));
     assert_solved(&place.run(&["inspect", "bare.npy", "--cell", "40um", "--height-scale", "1nm"]));
+}
+
+/// Fewer points than a spectrum needs have the other parameters.
+#[test]
+fn a_short_profile_has_no_spectrum_and_says_so() {
+    let place = Place::new();
+    place.write("short.csv", "x (um),z (nm)\n0,1\n1,-1\n2,1\n3,-1\n4,1\n5,-1\n");
+    let output = place.run(&["inspect", "short.csv", "--json", "--out", "look"]);
+    assert_solved(&output);
+    let record: Value = serde_json::from_slice(&output.stdout).expect("valid JSON");
+    assert_close("Pq", number(&record, "Pq"), 1e-9, 1e-9);
+    assert_close("PSm", number(&record, "PSm"), 2e-6, 1e-9);
+    assert_eq!(record["spectrum"], serde_json::json!([]));
+    assert!(record["notes"][0].as_str().is_some_and(|note| note.starts_with("6 points have no spectrum")), "{record}");
+    assert_eq!(place.names("look"), ["profile.png", "profile.svg"]);
+    assert_refused(&place.run(&["inspect", "short.csv", "--psd-out", "psd.csv"]), "has no spectrum; omit --psd-out");
+    place.write("two.csv", "x (um),z (nm)\n0,1\n1,2\n");
+    let told = place.run(&["inspect", "two.csv"]);
+    assert_solved(&told);
+    assert!(text(&told.stdout).contains("not defined: there is no whole element"), "{}", text(&told.stdout));
 }
 
 /// A surface of equal rows is the profile of one row, also with a hardness and on a layer.

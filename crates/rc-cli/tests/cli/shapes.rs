@@ -163,6 +163,7 @@ fn two_elastic_bodies_have_one_modulus() {
         assert_close(key, number(&found, key), number(&one, key), 1e-9);
     }
     assert_repeats(&place, "two");
+    assert_eq!(found["second_body"], serde_json::json!({ "young": 70e9, "poisson": 0.33 }));
     for (more, expected) in [
         ("--young2 70GPa", "poisson2: is missing"),
         ("--poisson2 0.3", "young2: is missing"),

@@ -196,3 +196,36 @@ fn what_a_study_cannot_compare_is_refused_before_it_is_solved() {
     assert_refused(&place.run(&again), "give the file that was measured, scan.npy");
     assert!(!place.path("t").exists());
 }
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_study_has_the_table_of_the_rows_so_far() {
+    let place = place();
+    let words = study(&["--pressures", "1e4:1e5:200", "--threads", "1", "--quiet", "--out", "s"]);
+    let child = std::process::Command::new(env!("CARGO_BIN_EXE_rc"))
+        .args(&words)
+        .current_dir(place.folder())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("rc runs");
+    let rows_so_far = || {
+        // The journal may not be there yet.
+        std::fs::read_to_string(place.path("s/sweep/sweep.jsonl")).unwrap_or_default().matches('\n').count()
+    };
+    let started = std::time::Instant::now();
+    while rows_so_far() < 4 && started.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let signal = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    assert!(signal.success());
+    let output = child.wait_with_output().expect("it ends");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{message}");
+    assert!(message.contains("interrupted with ") && message.contains("s/study.csv; --resume continues"), "{message}");
+    let rows = place.json("s/study.json")["rows"].as_array().expect("rows").len();
+    let table = text(&place.bytes("s/study.csv"));
+    assert_eq!(table.lines().count(), 1 + rows, "{message}");
+    // Equal maps are solved once and told for each treatment.
+    assert!(rows >= rows_so_far() - 1 && rows < 2400, "{rows} rows: {message}");
+    assert!(place.path("s/report.html").exists());
+}

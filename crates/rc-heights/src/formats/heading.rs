@@ -55,6 +55,7 @@ impl Heading {
     pub(super) fn of(text: &str) -> Result<Self, FormatError> {
         let mut heading = Self::default();
         let (mut last, mut first_words, mut count, mut n_comments) = (None, None, 0, 0);
+        let mut before_last = None;
         for (line, row) in lines(text) {
             if let Some(comment) = comment(row) {
                 n_comments += 1;
@@ -72,7 +73,7 @@ impl Heading {
             let is_rule = count > 0 && row.chars().all(|c| "-+|=_ \t".contains(c));
             if !is_rule && begins_numbers(row) {
                 heading.first = line;
-                heading.titles = Titles::above(last, row)?;
+                heading.titles = Titles::above(last, row)?.under(before_last);
                 return Ok(heading);
             }
             count += 1;
@@ -81,7 +82,7 @@ impl Heading {
             }
             if !is_rule {
                 heading.line(row);
-                last = Some((line, row));
+                before_last = last.replace((line, row));
                 first_words = first_words.or(last);
             }
         }

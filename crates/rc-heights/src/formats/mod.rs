@@ -41,6 +41,7 @@ mod nid;
 pub mod npy;
 mod opd;
 mod opdx;
+mod opdx_profile;
 mod opened;
 mod order;
 mod other;
@@ -178,6 +179,10 @@ pub fn has_profile(path: &Path, params: &ReadParams) -> Result<bool, ReadError> 
             let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
             file.whole(format, params).map(|bytes| sur::has_profile(&bytes)).map_err(fail)?
         }
+        Format::Opdx => {
+            let fail = |problem: FormatError| ReadError { path: path.to_owned(), problem };
+            file.whole(format, params).map(|bytes| opdx::has_profile(&bytes)).map_err(fail)?
+        }
         _ => false,
     })
 }
@@ -273,7 +278,7 @@ fn in_bytes<'a>(bytes: &'a [u8], format: Format, params: &'a ReadParams) -> Chan
         Format::Nid => nid::channels(bytes)?,
         Format::Npy => npy::channels(bytes, params),
         Format::Opd => opd::channels(bytes)?,
-        Format::Opdx => opdx::channels(bytes)?,
+        Format::Opdx => opdx::channels(bytes, params)?,
         Format::Plu => plu::channels(bytes)?,
         Format::Plux => plux::channels(bytes, params.max_bytes)?,
         Format::Png => png::channels(bytes, params.max_bytes),

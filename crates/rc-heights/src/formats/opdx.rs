@@ -9,7 +9,8 @@ use super::binary::{Bytes, Number};
 use super::channel::{Channel, Channels};
 use super::fields::{factor, positive, refused};
 use super::instrument::{map, metres, scale_measured, text};
-use crate::{Format, FormatError, HeightMap};
+use super::opdx_profile::{self, ProfileItems};
+use crate::{Format, FormatError, HeightMap, ReadParams};
 
 /// The first bytes.
 pub(super) const MARK: &[u8] = b"VCA DATA\x01\x00\x00\x55";
@@ -45,7 +46,8 @@ struct Contents<'a> {
     maps: Vec<MapItems<'a>>,
     /// The name of the main map.
     main: Option<String>,
-    has_profiles: bool,
+    /// The profiles, in the order of the file.
+    profiles: Vec<ProfileItems<'a>>,
 }
 
 /// A container that is not finished.
@@ -53,7 +55,7 @@ struct Open<'a> {
     path: String,
     /// What follows it.
     after: Bytes<'a>,
-    /// Place of its map in [`Contents::maps`], once an item of a map is found.
+    /// Place of its map in [`Contents::maps`], or of its profile, once an item of it is found.
     map: Option<usize>,
 }
 
@@ -63,11 +65,21 @@ enum Value<'a> {
     Quantity(f64, String),
     /// Columns, rows, and the numbers.
     Matrix(u32, u32, &'a [u8]),
+    /// The bytes of an array of numbers, after its type.
+    Array(&'a [u8]),
     Other,
 }
 
-pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
-    let Contents { maps, main, has_profiles } = contents(bytes)?;
+/// Whether the file has a profile and no map.
+pub(super) fn has_profile(bytes: &[u8]) -> bool {
+    contents(bytes).is_ok_and(|found| {
+        found.maps.iter().all(|map| map.matrix.is_none()) && found.profiles.iter().any(|one| one.heights.is_some())
+    })
+}
+
+/// The maps of a file, or its profiles if it has no map and these are asked for.
+pub(super) fn channels<'a>(bytes: &'a [u8], params: &ReadParams) -> Channels<'a> {
+    let Contents { maps, main, profiles } = contents(bytes)?;
     let mut channels = Vec::new();
     let mut first = None;
     for map in maps {
@@ -78,8 +90,12 @@ pub(super) fn channels(bytes: &[u8]) -> Channels<'_> {
         let channel = channel(&map, matrix);
         channels.push((map.name, channel));
     }
-    if channels.is_empty() && has_profiles {
-        let cure = "a map is needed: give a measurement of an area".to_owned();
+    if channels.is_empty() && !profiles.is_empty() {
+        if params.is_profile {
+            let of_profile = |items: ProfileItems<'a>| Some((items.name.clone(), opdx_profile::channel(items)?));
+            return Ok(super::channel::each(profiles.into_iter().filter_map(of_profile).collect()));
+        }
+        let cure = "give a measurement of an area, or --line for the contact of a profile".to_owned();
         return Err(FormatError::Profile { what: "a line of heights".to_owned(), cure });
     }
     if let Some(at) = first {
@@ -162,8 +178,18 @@ fn contents(bytes: &[u8]) -> Result<Contents<'_>, FormatError> {
 impl<'a> Contents<'a> {
     /// Keeps what an item of a container says, if it is used. The first of two items with a name counts.
     fn add(&mut self, container: &mut Open<'_>, name: &str, value: Value<'a>) {
-        self.has_profiles |= container.path == PROFILES
-            || container.path.strip_prefix(PROFILES).is_some_and(|path| path.starts_with('/'));
+        let of_profile = container.path.strip_prefix(PROFILES);
+        if let Some(of_profile) = of_profile.filter(|path| path.is_empty() || path.starts_with('/')) {
+            let at = *container.map.get_or_insert_with(|| {
+                self.profiles.push(ProfileItems {
+                    name: of_profile.trim_start_matches('/').to_owned(),
+                    ..ProfileItems::default()
+                });
+                self.profiles.len() - 1
+            });
+            self.profiles[at].add(name, value);
+            return;
+        }
         if [container.path.as_str(), name] == MAIN {
             if let (None, Value::Text(name)) = (&self.main, value) {
                 self.main = Some(name);
@@ -184,6 +210,31 @@ impl<'a> Contents<'a> {
             (None, Value::Matrix(nx, ny, data)) if map.matrix.is_none() => map.matrix = Some((nx, ny, data)),
             (Some(i), Value::Quantity(value, unit)) if map.quantities[i].is_none() => {
                 map.quantities[i] = Some((value, unit));
+            }
+            _ => {}
+        }
+    }
+}
+
+impl<'a> ProfileItems<'a> {
+    /// Keeps what an item says, if it is used. The first of two items with a name counts.
+    fn add(&mut self, name: &str, value: Value<'a>) {
+        let array = match name {
+            "Array" => Some(&mut self.heights),
+            "PositionArray" => Some(&mut self.places),
+            _ => None,
+        };
+        let quantity = match name {
+            "DataScale" => Some(&mut self.scale),
+            "Extent" => Some(&mut self.extent),
+            _ => None,
+        };
+        match (array, quantity, value) {
+            (Some(array), _, Value::Array(bytes)) => {
+                array.get_or_insert(bytes);
+            }
+            (_, Some(quantity), Value::Quantity(value, unit)) => {
+                quantity.get_or_insert((value, unit));
             }
             _ => {}
         }
@@ -213,7 +264,11 @@ fn value<'a>(kind: u8, rest: &mut Bytes<'a>) -> Result<Value<'a>, FormatError> {
         // A unit.
         0x18 => part(rest).map(|_| Value::Other),
         // Things with the name of their type: a number, arrays, a list of texts, positions.
-        0x0e | 0x40 | 0x42 | 0x7c => {
+        0x40 => {
+            name(rest)?;
+            part(rest).map(Value::Array)
+        }
+        0x0e | 0x42 | 0x7c => {
             name(rest)?;
             part(rest).map(|_| Value::Other)
         }

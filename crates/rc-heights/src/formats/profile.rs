@@ -3,6 +3,8 @@
 //! A profile is a map of one row. Both sides of its cell are the length of the profile, which is the number of points
 //! times their step.
 
+use std::borrow::Cow;
+
 use rc_core::Grid;
 use rc_core::quantity::digits;
 
@@ -10,7 +12,7 @@ use super::decode::decoded;
 use super::field::{field, transposed};
 use super::fields::shown;
 use super::heading::Heading;
-use super::lines::{cell, data_lines, words};
+use super::lines::{cell, data_lines, raw_lines, words};
 use super::marks::Marks;
 use super::titles::columns;
 use crate::{FormatError, HeightMap, ReadNote, Unit};
@@ -37,7 +39,9 @@ pub(super) fn looks_like_profile(start: &[u8]) -> bool {
     let whole = text.rsplit_once(['\n', '\r']).map_or("", |(whole, _)| whole);
     let Ok(heading) = Heading::of(whole) else { return false };
     let lines: Vec<usize> = data_lines(whole, heading.first).take(LOOKED_AT).map(|(_, row)| columns(row)).collect();
-    let is_narrow = |n: &usize| *n <= 2 || *n == 3 && heading.titles.counts_rows() && !heading.titles.are_of_points();
+    let titles = &heading.titles;
+    let is_profile_of_three = titles.flag().is_some() || titles.counts_rows() && !titles.are_of_points();
+    let is_narrow = |n: &usize| *n <= 2 || *n == 3 && is_profile_of_three;
     lines.len() > 1 && lines.iter().all(is_narrow) && !heading.says_whole_size()
 }
 
@@ -49,6 +53,7 @@ pub(super) fn looks_like_profile(start: &[u8]) -> bool {
 /// [`FormatError::Columns`] for other columns, and [`FormatError::Irregular`] for uneven steps.
 pub(super) fn parse(bytes: &[u8], missing: &[f64]) -> Result<HeightMap, FormatError> {
     let text = decoded(bytes);
+    let text = without_count(&text).map_or(text, Cow::Owned);
     let heading = Heading::of(&text)?;
     let mut rows = data_lines(&text, heading.first);
     let Some((_, first)) = rows.next() else {
@@ -78,12 +83,25 @@ pub(super) fn parse(bytes: &[u8], missing: &[f64]) -> Result<HeightMap, FormatEr
     Ok(map)
 }
 
+/// A text without the number of its points, which may stand alone in a line before them. The line is blank then.
+///
+/// `None` if there is no such line.
+fn without_count(text: &str) -> Option<String> {
+    let heading = Heading::of(text).ok()?;
+    let mut rows = data_lines(text, heading.first);
+    let ((_, count), (_, row)) = (rows.next()?, rows.next()?);
+    // Some programs count the points, others the steps.
+    let is_count = columns(count) == 1 && columns(row) > 1 && count.trim().parse::<usize>().is_ok();
+    let line = |(n, line): (usize, &str)| if n == heading.first { "\n".to_owned() } else { format!("{line}\n") };
+    is_count.then(|| raw_lines(text).map(line).collect())
+}
+
 /// Places, each with its number of digits behind the point, and heights.
 type Points = (Vec<(f64, usize)>, Vec<f64>);
 
 /// The places and heights of the text, which are in these of `width` columns.
 fn of_columns(text: &str, heading: &Heading, (width, columns): (usize, [usize; 2])) -> Result<Points, FormatError> {
-    let (mut x, mut heights) = (Vec::new(), Vec::new());
+    let (mut x, mut heights, flag) = (Vec::new(), Vec::new(), heading.titles.flag());
     for (line, row) in data_lines(text, heading.first) {
         let (words, comma) = words(row);
         let all: Vec<&str> = words.collect();
@@ -101,7 +119,8 @@ fn of_columns(text: &str, heading: &Heading, (width, columns): (usize, [usize; 2
             return Err(FormatError::NoNumber { line, value: columns[0] + 1, text: shown(all[columns[0]]) });
         }
         x.push((place, decimals(all[columns[0]])));
-        heights.push(height);
+        let is_valid = flag.and_then(|flag| all.get(flag)).is_none_or(|word| word.trim() != "0");
+        heights.push(if is_valid { height } else { f64::NAN });
     }
     Ok((x, heights))
 }
@@ -126,7 +145,7 @@ fn decimals(word: &str) -> usize {
 }
 
 /// The profile of heights at these places, which have as many digits behind the point, or at unknown equal steps.
-fn of_points(x: Option<Vec<(f64, usize)>>, mut heights: Vec<f64>) -> Result<HeightMap, FormatError> {
+pub(super) fn of_points(x: Option<Vec<(f64, usize)>>, mut heights: Vec<f64>) -> Result<HeightMap, FormatError> {
     let grid = Grid::new(heights.len(), 1)?;
     let Some(x) = x else {
         return Ok(HeightMap::new(field(grid, heights), Unit::Unnamed, None, Unit::Unnamed));
@@ -260,6 +279,21 @@ mod tests {
             let error = parse(text.as_bytes(), &[]).expect_err(text).to_string();
             assert!(error.contains(expected) && !error.contains('\n'), "{text:?}: {error}");
         }
+    }
+
+    #[test]
+    fn names_above_units_flags_and_a_count_of_points_are_known() {
+        let flagged = "X;Y;valid\n[mm];[um];[1/0]\n8.0;1.5;1\n8.5;99;0\n9.0;2.5;1\n";
+        assert!(looks_like_profile(flagged.as_bytes()));
+        let map = read(flagged);
+        assert_eq!((map.missing(), map.sides), (1, Some([1.5e-3; 2])));
+        assert!((map.heights.values()[2] / 2.5e-6 - 1.0).abs() < 1e-12, "{:?}", map.heights.values());
+        for text in ["um nm\n3\n0 1\n2 3\n4 5\n", "um nm\n0 1\n2 3\n4 5\n"] {
+            let map = read(text);
+            assert_eq!((map.heights.values().len(), map.side_unit), (3, Unit::Metre), "{text}");
+            assert!((map.sides.expect("sides")[0] / 6e-6 - 1.0).abs() < 1e-12, "{text}");
+        }
+        assert!(parse(b"4.5\n0 1\n2 3\n4 5\n", &[]).is_err(), "no number of points");
     }
 
     /// Steps of 0.156 with one digit behind the point are uneven, and even to their rounding.

@@ -120,10 +120,10 @@ impl Format {
         match extension {
             Some("xyz") => Ok(Self::Xyz),
             // Lines of three numbers are points. Few maps have only three columns.
-            Some("csv" | "txt" | "tsv" | "dat" | "asc") if is_text(start) => {
+            Some("csv" | "txt" | "tsv" | "dat" | "asc" | "hfm") if is_text(start) => {
                 Ok(if xyz::looks_like_points(start) { Self::Xyz } else { Self::Csv })
             }
-            Some("csv" | "txt" | "tsv" | "asc") => Err(FormatError::ZeroBytes),
+            Some("csv" | "txt" | "tsv" | "asc" | "hfm") => Err(FormatError::ZeroBytes),
             Some("npy") => mark(Self::Npy, "it must begin with \\x93NUMPY; numpy.save writes such files"),
             Some("grd") => mark(Self::Surfer, "it must begin with DSAA, DSBB or DSRB"),
             Some("gsf") => mark(Self::Gsf, "it must begin with the line 'Gwyddion Simple Field 1.0'"),

@@ -57,6 +57,23 @@ impl Titles {
         if may_be_damaged { Err(titles.damaged()) } else { Ok(titles) }
     }
 
+    /// The titles with those of the line above, if these are units alone.
+    pub(super) fn under(self, above: Option<(usize, &str)>) -> Self {
+        let is_unit = |name: &String| name.starts_with(['[', '(']) && name.ends_with([']', ')']);
+        let names = above.map_or_else(Vec::new, |(_, text)| split(text));
+        if self.names.is_empty() || names.len() != self.names.len() || !self.names.iter().all(is_unit) {
+            return self;
+        }
+        let names = names.iter().zip(&self.names).map(|(name, unit)| format!("{name} {unit}")).collect();
+        Self { names, ..self }
+    }
+
+    /// The column that says which points of a profile are measured: the third, after x and y, called valid.
+    pub(super) fn flag(&self) -> Option<usize> {
+        let words: Vec<String> = self.names.iter().map(|name| first_word(name)).collect();
+        (words == ["x", "y", "valid"]).then_some(2)
+    }
+
     /// The error for titles that are numbers without being titles.
     pub(super) fn damaged(&self) -> FormatError {
         FormatError::NoNumber { line: self.line, value: 1, text: shown(self.names.first().map_or("", String::as_str)) }
@@ -129,6 +146,9 @@ impl Titles {
         if all < 3 {
             return Ok(None);
         }
+        if self.flag().is_some() {
+            return Err(FormatError::profile_in_text("a text of x and height beside a flag"));
+        }
         let (x, y) = (self.at("x"), self.at("y"));
         let z = self.at("z").or_else(|| self.at("height")).or_else(|| self.at("depth"));
         let has_counter = self.names.iter().any(|name| name.is_empty() || is_count(name));
@@ -158,6 +178,9 @@ impl Titles {
     /// # Errors
     /// [`FormatError::Field`] when titles do not say which of more than two columns they are.
     pub(super) fn of_profile(&self, width: usize) -> Result<[usize; 2], FormatError> {
+        if self.flag().is_some() {
+            return Ok([0, 1]);
+        }
         let is_counter = |i: &usize| self.names.get(*i).is_some_and(|name| name.is_empty() || is_count(name));
         let columns: Vec<usize> = (0..width).filter(|i| !is_counter(i)).collect();
         let named = |words: &[&str], other: Option<usize>| {

@@ -2,6 +2,7 @@
 //!
 //! These are facts, not judgements: a caller decides what to say about them.
 
+mod borders;
 mod map;
 mod medians;
 mod near;
@@ -11,7 +12,7 @@ mod values;
 use rc_core::{Field, Grid};
 
 pub use near::SPIKE;
-pub use spikes::{Spikes, spike_points, spikes};
+pub use spikes::{Spikes, border_outliers, spike_points, spikes};
 pub use values::{Counter, Mark, counter, marks};
 
 /// Most columns or rows of a map that looks like a table of something else.

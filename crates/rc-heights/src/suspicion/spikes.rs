@@ -13,6 +13,7 @@ use std::collections::HashSet;
 
 use rc_core::Field;
 
+use super::borders::outliers;
 use super::map::{Map, NEIGHBOURS, square};
 use super::near::{CANDIDATE, Near, SPIKE};
 
@@ -64,6 +65,15 @@ pub fn spike_points(heights: &Field, sigma: f64) -> Vec<usize> {
     let Some((map, deviation)) = usual(heights, false) else { return Vec::new() };
     let index = |[x, y]: [isize; 2]| heights.grid().index(x as usize, y as usize);
     rare(&map, sigma * deviation).into_iter().map(|(at, _)| index(at)).collect()
+}
+
+/// Outliers at the borders of holes of a map that is not periodic: indices, and heights of the points near them.
+///
+/// They deviate by more than `sigma` robust standard deviations from the nearest points that are away from holes.
+/// `spikes` count as missing.
+#[must_use]
+pub fn border_outliers(heights: &Field, sigma: f64, spikes: &[usize]) -> Vec<(usize, f64)> {
+    usual(heights, false).map_or_else(Vec::new, |(_, deviation)| outliers(heights, spikes, sigma * deviation))
 }
 
 /// A map with the usual deviation of its points. `None` if no point can be a spike.

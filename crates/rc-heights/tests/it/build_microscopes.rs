@@ -8,7 +8,7 @@ use zip::CompressionMethod;
 use crate::build_instruments::{f32s, i16s, vk4};
 use crate::parts::{HEIGHTS, zipped};
 
-fn f64s(values: &[f64]) -> Vec<u8> {
+pub(crate) fn f64s(values: &[f64]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
@@ -59,12 +59,12 @@ pub(crate) fn wsxm(header: &str, numbers: &[u8]) -> Vec<u8> {
 }
 
 /// Bytes after their number in four bytes.
-fn named(bytes: &[u8]) -> Vec<u8> {
+pub(crate) fn named(bytes: &[u8]) -> Vec<u8> {
     [&u32s(&[bytes.len() as u32]), bytes].concat()
 }
 
 /// Bytes after their number in one, two or four bytes.
-fn sized(bytes: &[u8]) -> Vec<u8> {
+pub(crate) fn sized(bytes: &[u8]) -> Vec<u8> {
     let length = bytes.len() as u32;
     match length {
         0..256 => [&[1, length as u8], bytes].concat(),

@@ -1,6 +1,6 @@
 //! Tests of files of microscopes and profilers, which are built byte by byte in every variant.
 
-use rc_heights::{Format, FormatError, HeightMap, ReadParams, Unit, channels_of, parse, parse_with};
+use rc_heights::{Format, FormatError, HeightMap, ReadParams, Scales, Unit, channels_of, parse, parse_with};
 
 use crate::build_instruments::{self, f32s, i16s, with};
 use crate::build_microscopes as build;
@@ -253,4 +253,34 @@ fn a_profile_of_a_stylus_is_named() {
     let profile = build::container("1D_Data", &[build::quantity("Extent", 1.0, "mm")]);
     let bytes = [b"VCA DATA\x01\0\0\x55".to_vec(), profile].concat();
     assert!(matches!(parse(&bytes, Format::Opdx), Err(FormatError::Profile { .. })));
+}
+
+/// A Dektak file with a profile alone.
+#[test]
+fn a_profile_of_a_dektak_is_read_where_one_is_asked_for() {
+    let array = |name: &str, values: &[f64]| {
+        let content = [vec![0x0d, 8, 0, 0, 0], build::f64s(values)].concat();
+        build::item(name, 0x40, &[build::named(b"double *"), build::sized(&content)].concat())
+    };
+    let file = |places: &[f64]| {
+        let items = [
+            build::quantity("DataScale", 1e-3, "\u{b5}m"),
+            build::quantity("Extent", 6.0, "\u{b5}m"),
+            array("PositionArray", places),
+            array("Array", &[1.0, -2.0, 3.0, 4.0]),
+        ];
+        let profiles = build::container("1D_Data", &[build::container("Raw", &items)]);
+        [b"VCA DATA\x01\0\0\x55".to_vec(), profiles].concat()
+    };
+    let params = ReadParams { is_profile: true, ..ReadParams::default() };
+    let read = |bytes: &[u8]| parse_with(bytes, Format::Opdx, &params);
+    let map = read(&file(&[0.0, 2.0, 4.0, 6.0])).expect("a profile").in_metres(Scales::default()).expect("metres");
+    for (found, expected) in map.heights.values().iter().zip([1e-9, -2e-9, 3e-9, 4e-9]) {
+        assert!((found / expected - 1.0).abs() < 1e-12, "{found} for {expected}");
+    }
+    assert!((map.sides.expect("sides")[0] / 8e-6 - 1.0).abs() < 1e-12, "{:?}", map.sides);
+    let refused = |result: Result<HeightMap, FormatError>| result.expect_err("no such profile").to_string();
+    assert!(refused(read(&file(&[0.0, 1.0, 4.0, 6.0]))).contains("not equally spaced"));
+    assert!(refused(read(&file(&[0.0, 2.0, 4.0]))).contains("number of places is '3'"));
+    assert!(refused(parse(&file(&[0.0, 2.0, 4.0, 6.0]), Format::Opdx)).contains("or --line"));
 }

@@ -118,6 +118,53 @@ fn spikes_beside_holes_and_in_groups_are_replaced_by_what_is_around() {
     }
 }
 
+/// A rough map with round holes, in which every ninth point is measured.
+fn with_holes(mut map: HeightMap) -> HeightMap {
+    let grid = map.heights.grid();
+    for iy in 0..grid.ny() {
+        for ix in 0..grid.nx() {
+            let [x, y] = [ix % 40, iy % 40].map(|at| at as f64 - 20.0);
+            if x.hypot(y) < 9.0 && !(ix % 3 == 0 && iy % 3 == 0) {
+                map.heights.values_mut()[grid.index(ix, iy)] = f64::NAN;
+            }
+        }
+    }
+    map
+}
+
+#[test]
+fn groups_of_outliers_at_and_in_holes_are_found_and_good_points_and_walls_stay() {
+    let despike = Treatment::Despike { sigma: 8.0 };
+    let clean = with_holes(rough(200, 160, 5));
+    let (same, effect) = treated(&clean, despike);
+    assert_eq!((same.missing(), effect.changed), (clean.missing(), 0), "good points were touched");
+    let mut wrong = clean.clone();
+    // A single point inside a hole, and groups of two and of five at its border, on either side.
+    let groups: [&[(usize, usize)]; 3] =
+        [&[(21, 21)], &[(60, 28), (60, 29)], &[(91, 19), (91, 20), (90, 20), (91, 21), (90, 21)]];
+    let mut planted: Vec<usize> = groups.concat().into_iter().map(|(x, y)| clean.heights.grid().index(x, y)).collect();
+    for (n, i) in planted.iter().enumerate() {
+        wrong.heights.values_mut()[*i] = if n % 3 == 0 { -2e-5 } else { 1e-4 };
+    }
+    let (despiked, effect) = treated(&wrong, despike);
+    let mut removed: Vec<usize> = effect.removed.iter().map(|(i, _)| *i).collect();
+    removed.sort_unstable();
+    planted.sort_unstable();
+    assert_eq!(removed, planted);
+    for i in planted.into_iter().filter(|i| clean.heights.values()[*i].is_finite()) {
+        let off = despiked.heights.values()[i] - clean.heights.values()[i];
+        // In the middle of a hole, the height is not known better than to the rms height.
+        assert!(off.abs() < 1e-6, "point {i} is off by {off:e}");
+    }
+    // The floors of pits with walls that are not measured, nine points each, are features.
+    let pits = map(120, 120, |x, y| {
+        let [i, j] = [x, y].map(|at| (at * 120.0) as usize % 8);
+        let wall = i.abs_diff(3).max(j.abs_diff(3));
+        if wall == 2 { f64::NAN } else { 1e-8 * quasi_random((1e4 * x) as usize) - if wall < 2 { 5e-6 } else { 0.0 } }
+    });
+    assert_eq!(treated(&pits, despike).1.changed, 0, "floors of pits were removed");
+}
+
 #[test]
 fn the_measured_rectangle_has_no_border_that_is_mostly_missing() {
     let whole = rough(60, 50, 1);

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use crate::descent::directions::{ConjugateDirections, Slope};
+use crate::descent::gmres::{self, ActiveElements, LinearSystem};
 use crate::descent::layout::BlockLayout;
 use crate::descent::operators::{BlockOperator, PreconditionedOperator, read_blocks, write_blocks};
 use crate::parallel;
@@ -78,6 +79,29 @@ pub(crate) fn stiffness_under(x: &[f32], n: f64, operator: &mut dyn BlockOperato
     });
     let ([mean], [work]) = (layout.total(means), layout.total(works));
     if work > 0.0 { mean * mean / (work * n) } else { 0.0 }
+}
+
+/// [`stiffness_of`] for an operator that is not symmetric, by GMRES.
+///
+/// ⟨x⟩ has no extremum then, so its error is that of x.
+pub(crate) fn stiffness_by_gmres(
+    pressure: &[f64],
+    (n, converged): (f64, bool),
+    operator: &mut dyn PreconditionedOperator,
+) -> f64 {
+    let layout = operator.layout();
+    let active: Vec<bool> = pressure.iter().map(|&p| p > 0.0).collect();
+    let first: Vec<f32> = against(pressure, &layout);
+    operator.set_active(&active);
+    let secant = stiffness_under(&first, n, operator);
+    operator.set_mean(secant);
+    let elements = ActiveElements::new(active, layout.len());
+    let one = vec![1.0; elements.len()];
+    let goal = gmres::Goal { reduction: 0.1 * gain(converged), directions: 2 * MAX_STEPS };
+    let mut system = LinearSystem { operator, elements: &elements, fixed_mean: false };
+    let Ok((x, _)) = system.solve(one, goal, &rc_core::Silent) else { return f64::NAN };
+    let sums = parallel::map(x.chunks(layout.len()), |x| x.iter().copied().map(f64::from).sum::<f64>());
+    sums.into_iter().sum::<f64>() / n
 }
 
 /// Iterates for x until a step adds less than `smallest_gain`, and returns its mean.

@@ -2,7 +2,7 @@
 
 use rc_core::{Boundary, Field, Kernel};
 
-use crate::descent::stiffness::{elastic_part, gain, search};
+use crate::descent::stiffness::{elastic_part, gain, search, stiffness_by_gmres};
 use crate::grid::operators::corrections_of;
 use crate::grid::response::GridResponse;
 use crate::problem::support::Support;
@@ -17,6 +17,9 @@ pub(crate) fn contact_stiffness(pressure: &Field, hardness: f64, kernel: &dyn Ke
         return support.compliance.recip();
     }
     let mut operator = corrections_of(grid, kernel, &GridResponse::of(grid, kernel));
+    if kernel.sliding_velocity().is_some() {
+        return stiffness_by_gmres(&pressure, (grid.len() as f64, converged), &mut *operator);
+    }
     search(&pressure, (grid.len() as f64, gain(converged)), &mut *operator, |_, _| {})
 }
 

@@ -27,8 +27,17 @@ const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 /// A part s of a step is taken if it lowers the energy error by this times s.
 const PROGRESS: f64 = 0.1;
 
-/// Failed Newton steps in a row after which the storage modulus is kept until the error has fallen.
+/// Failed Newton steps in a row after which steps with the storage modulus are solved well.
 const FAILURES: usize = 3;
+
+/// Such steps, and the rounds of each. They are doubled up to [`LONGEST`] where the error has not fallen to [`GAIN`] of
+/// that at the last such steps.
+const LONG: [usize; 2] = [4, 4];
+const LONGEST: [usize; 2] = [128, 32];
+const GAIN: f64 = 0.7;
+
+/// Part of its first error to which such a step is solved.
+const INNER: f64 = 0.1;
 
 /// Rounds without progress after which the iteration gives up.
 const PATIENCE: usize = 200;
@@ -59,7 +68,7 @@ impl<'a> SlidingDescent<'a> {
     /// Iterates until the goal is reached, or cannot be reached.
     pub(crate) fn run(&mut self, goal: Goal, watch: &DescentObserver<'_>) -> Outcome {
         let mut sums = self.descent.start();
-        let (mut failures, mut until) = (0, 0.0);
+        let mut fallback = Fallback::new();
         let (mut smallest, mut rounds) = (f64::INFINITY, 0);
         loop {
             let mut error = self.descent.error(&sums);
@@ -80,18 +89,11 @@ impl<'a> SlidingDescent<'a> {
                 sums = self.descent.refresh();
                 return self.descent.unfinished(goal, &sums);
             }
-            let may_step = failures < FAILURES || self.energy_error(&sums) < until;
-            let next = if may_step { self.newton_step(&sums, watch.observer) } else { Ok(None) };
-            let next = match next {
+            let next = match self.newton_step(&sums, watch.observer) {
+                Ok(None) => self.storage_rounds(&sums, &mut fallback, watch.observer),
                 Ok(Some(next)) => {
-                    failures = 0;
+                    fallback.failures = 0;
                     Ok(next)
-                }
-                Ok(None) => {
-                    if may_step {
-                        (failures, until) = (failures + 1, 0.5 * self.energy_error(&sums));
-                    }
-                    self.storage_round(&sums, watch.observer)
                 }
                 Err(stopped) => Err(stopped),
             };
@@ -155,17 +157,74 @@ impl<'a> SlidingDescent<'a> {
         Ok(Some(elements))
     }
 
-    /// A round of the descent with the storage modulus. The heights make up for what the operators differ in.
-    fn storage_round(&mut self, sums: &GapSums, observer: &dyn Observer) -> Result<GapSums, Stopped> {
-        self.work.storage_rounds += 1;
-        let descent = &mut self.descent;
-        std::mem::swap(&mut descent.operators.corrections, &mut self.storage);
-        descent.start_afresh();
-        let round = descent.round(1, sums, observer);
-        std::mem::swap(&mut descent.operators.corrections, &mut self.storage);
-        descent.start_afresh();
-        round?;
-        // The gap has followed the other operator.
-        Ok(descent.refresh())
+    /// Steps with the storage modulus.
+    ///
+    /// A step solves the contact of the elastic solid under heights that make up for what the operators differ in. Its
+    /// gap is that of the present pressure, and follows the elastic solid. The first step after a Newton step takes one
+    /// round. Newton steps that fail again and again are followed by more and more steps, solved more and more exactly.
+    fn storage_rounds(
+        &mut self,
+        sums: &GapSums,
+        fallback: &mut Fallback,
+        observer: &dyn Observer,
+    ) -> Result<GapSums, Stopped> {
+        fallback.fail(self.energy_error(sums));
+        let mut sums = *sums;
+        for _ in 0..fallback.steps {
+            let wanted = INNER * self.descent.error(&sums);
+            self.exchange();
+            for _ in 0..fallback.rounds {
+                self.work.storage_rounds += 1;
+                let round = self.descent.round(1, &sums, observer);
+                if round.is_err() {
+                    self.exchange();
+                }
+                sums = round?;
+                if self.descent.error(&sums) <= wanted {
+                    break;
+                }
+            }
+            self.exchange();
+            // The gap has followed the other operator.
+            sums = self.descent.refresh();
+        }
+        Ok(sums)
+    }
+
+    /// Exchanges the operator for that with the storage modulus, or back.
+    fn exchange(&mut self) {
+        std::mem::swap(&mut self.descent.operators.corrections, &mut self.storage);
+        self.descent.start_afresh();
+    }
+}
+
+/// What follows a failed Newton step.
+struct Fallback {
+    /// Failed Newton steps in a row.
+    failures: usize,
+    /// Steps with the storage modulus, and the rounds that each of them may take.
+    steps: usize,
+    rounds: usize,
+    /// The energy error at the last long sequence of steps.
+    error: f64,
+}
+
+impl Fallback {
+    fn new() -> Self {
+        Self { failures: 0, steps: 1, rounds: 1, error: f64::INFINITY }
+    }
+
+    /// Notes a failed step at this energy error.
+    fn fail(&mut self, error: f64) {
+        self.failures += 1;
+        if self.failures < FAILURES {
+            (self.steps, self.rounds) = (1, 1);
+            return;
+        }
+        let has_gained = error < GAIN * self.error;
+        let [steps, rounds] =
+            if has_gained { LONG } else { [self.steps.max(LONG[0] / 2) * 2, self.rounds.max(LONG[1] / 2) * 2] };
+        (self.steps, self.rounds) = (steps.min(LONGEST[0]), rounds.min(LONGEST[1]));
+        self.error = self.error.min(error);
     }
 }

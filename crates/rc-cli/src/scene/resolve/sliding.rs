@@ -1,14 +1,13 @@
 //! The keys of a surface that slides over a solid that relaxes.
 
 use rc_core::quantity::{count, digits, engineering};
-use rc_core::{Boundary, DVec2, Grid};
+use rc_core::{DVec2, Grid};
 use rc_kernel::{MaterialError, Relaxation};
-use rc_solver::Method;
 
 use super::checks::missing;
 use crate::error::CliError;
 use crate::scene::file;
-use crate::scene::keys::{ContactKeys, KernelName};
+use crate::scene::keys::ContactKeys;
 use crate::scene::material::{FractionalSpec, PronySpec};
 use crate::scene::prony_file::PronyFile;
 
@@ -115,9 +114,6 @@ pub(super) fn solid(keys: &ContactKeys) -> Result<Option<SlidingSolid>, CliError
             if !direction.is_finite() {
                 return Err(CliError::input(format_args!("direction: must be an angle in degrees, not {direction}")));
             }
-            if speed > 0.0 {
-                refuse(keys)?;
-            }
             Ok(Some(SlidingSolid { material, speed, direction }))
         }
     }
@@ -205,27 +201,6 @@ fn of_prony(keys: &ContactKeys) -> Result<Result<Relaxation, MaterialError>, Cli
 fn of_fractional(keys: &ContactKeys) -> Result<Result<Relaxation, MaterialError>, CliError> {
     let FractionalSpec { alpha, glassy_ratio, tau } = keys.fractional.ok_or_else(|| missing("fractional"))?;
     Ok(Relaxation::fractional(alpha, glassy_ratio, tau))
-}
-
-/// Refuses what no sliding surface goes with.
-fn refuse(keys: &ContactKeys) -> Result<(), CliError> {
-    let refused = |key: &str, why: &str| Err(CliError::input(format_args!("{key}: {why}; omit it, or speed")));
-    match keys.method {
-        Some(method @ (Method::Adaptive | Method::GaussSeidel)) => {
-            return refused("method", &format!("only the uniform method solves sliding, not {method}"));
-        }
-        Some(Method::Uniform) | None => {}
-    }
-    if keys.boundary == Some(Boundary::Free) {
-        return refused("boundary", "a surface slides over periodic cells only");
-    }
-    if keys.kernel == Some(KernelName::Own) {
-        return refused("kernel", "a function describes a solid at rest");
-    }
-    if keys.border_level.is_some_and(|level| level > 0) {
-        return refused("border_level", "only the adaptive method halves elements, which solves no sliding");
-    }
-    Ok(())
 }
 
 #[cfg(test)]
