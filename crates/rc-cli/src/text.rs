@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rc_core::quantity::{Scale, count, digits, engineering};
-use rc_sweep::{ControlKind, LeakageSummary, Summary};
+use rc_sweep::{ControlKind, FrictionSummary, LeakageSummary, Summary};
 
 /// A few aligned lines about a solved problem.
 ///
@@ -84,9 +84,9 @@ pub(crate) fn plastic(s: &Summary) -> Option<String> {
 
 /// Text of the friction; `None` without a speed.
 pub(crate) fn friction(s: &Summary) -> Option<String> {
-    let (value, error, lateral) = (s.friction?, s.friction_error?, s.lateral_friction?);
-    let power = engineering(s.dissipated_power?, "W/m²");
-    Some(format!("{}, lateral {}, dissipates {power}", with_error(value, error), digits(lateral, 2)))
+    let FrictionSummary { friction, friction_error, lateral_friction, dissipated_power, .. } = s.friction?;
+    let (friction, lateral) = (with_error(friction, friction_error), digits(lateral_friction, 2));
+    Some(format!("{friction}, lateral {lateral}, dissipates {}", engineering(dissipated_power, "W/m²")))
 }
 
 /// Text of the electrical and thermal conductance.

@@ -3,11 +3,12 @@
 use std::time::Duration;
 
 use rc_core::Units;
-use rc_solver::{ErrorBound, Friction, Solution};
+use rc_solver::{ErrorBound, Solution};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use crate::content::Cells;
+use crate::friction::FrictionSummary;
 use crate::leakage::LeakageSummary;
 use crate::memory;
 use crate::origin::MapOrigin;
@@ -108,32 +109,9 @@ pub struct Summary {
     /// It exists only with conductivities, and is null in full contact.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
     pub conductance: Option<Option<f64>>,
-    /// Friction coefficient of a surface that slides: the force against its velocity, relative to the load.
-    ///
-    /// This key and the next seven exist only with a speed. At the speed 0 they are 0.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub friction: Option<f64>,
-    /// Estimated error of `friction`, of the mesh and the iteration.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub friction_error: Option<f64>,
-    /// Proven bound of the error of `friction` that the iteration leaves on this grid.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub friction_bound: Option<f64>,
-    /// Force across the velocity, positive to its left, relative to the load.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lateral_friction: Option<f64>,
-    /// Power that the solid dissipates, per nominal area (W/m²).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub dissipated_power: Option<f64>,
-    /// Maximum loss tangent of the waves of the grid at this speed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub max_loss_tangent: Option<f64>,
-    /// Number of directions of GMRES on the finest grid.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gmres_iterations: Option<usize>,
-    /// Number of rounds with the storage modulus on the finest grid.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub monotone_steps: Option<usize>,
+    /// Friction of a surface that slides. Its keys exist only with a speed, and are 0 at the speed 0.
+    #[serde(flatten)]
+    pub friction: Option<FrictionSummary>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
     /// rms height about the mean (m).
@@ -230,22 +208,6 @@ pub struct SolveContext {
     pub slides: bool,
 }
 
-/// The friction of `solution`, which is 0 at rest.
-fn friction(solution: &Solution<'_>) -> Friction {
-    let at_rest = Friction {
-        coefficient: 0.0,
-        error: 0.0,
-        bound: 0.0,
-        of_displacement: 0.0,
-        lateral: 0.0,
-        power: 0.0,
-        max_loss_tangent: 0.0,
-        gmres_iterations: 0,
-        storage_rounds: 0,
-    };
-    solution.info().friction.unwrap_or(at_rest)
-}
-
 /// The tolerance relative to the range of heights, and that of the energy.
 fn tolerances(bound: ErrorBound) -> [Option<f64>; 2] {
     match bound {
@@ -277,9 +239,7 @@ impl Summary {
     /// The summary of `solution` in SI units. Its memory is the peak of the process so far.
     #[must_use]
     pub fn of(solution: &Solution<'_>, units: Units, context: &SolveContext) -> Self {
-        let (info, [tolerance, energy_tolerance]) = (solution.info(), tolerances(solution.bound()));
-        let (observables, [of_spots, error_of_spots]) = (solution.observables(), conductance(solution, units));
-        let friction = context.slides.then(|| friction(solution));
+        let (info, observables, of_spots) = (solution.info(), solution.observables(), conductance(solution, units));
         Self {
             status: solution.status().name().to_owned(),
             control: context.control.key().to_owned(),
@@ -311,17 +271,10 @@ impl Summary {
             mean_gap: units.metres(observables.mean_gap),
             mean_gap_error: Some(units.metres(observables.mean_gap_error)),
             contact_stiffness: finite(units.pascals_per_metre(solution.stiffness())),
-            contact_conductance: of_spots,
-            contact_conductance_error: error_of_spots,
-            conductance: context.conductivity.map(|of_bodies| of_spots.map(|per_unit| per_unit * of_bodies)),
-            friction: friction.map(|friction| friction.coefficient),
-            friction_error: friction.map(|friction| friction.error),
-            friction_bound: friction.map(|friction| friction.bound),
-            lateral_friction: friction.map(|friction| friction.lateral),
-            dissipated_power: friction.map(|friction| units.metres(units.pascals(friction.power))),
-            max_loss_tangent: friction.map(|friction| friction.max_loss_tangent),
-            gmres_iterations: friction.map(|friction| friction.gmres_iterations),
-            monotone_steps: friction.map(|friction| friction.storage_rounds),
+            contact_conductance: of_spots[0],
+            contact_conductance_error: of_spots[1],
+            conductance: context.conductivity.map(|of_bodies| of_spots[0].map(|per_unit| per_unit * of_bodies)),
+            friction: context.slides.then(|| FrictionSummary::of(solution, units)),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,
@@ -330,8 +283,8 @@ impl Summary {
             penetration_error: info.certificate.penetration,
             energy_error: Some(info.certificate.energy),
             load_error: info.certificate.load,
-            tolerance,
-            energy_tolerance,
+            tolerance: tolerances(solution.bound())[0],
+            energy_tolerance: tolerances(solution.bound())[1],
             cells_evaluated: Some(solution.n_evaluated()),
             cells_proven: Some(solution.n_proven()),
             level_iterations: Some(info.levels.iter().map(|level| level.iterations).collect()),

@@ -23,7 +23,7 @@ use crate::scene::resolve::{self, sliding};
 use crate::text;
 use rc_core::quantity::{digits, engineering};
 use rc_plot::Palette;
-use rc_sweep::Summary;
+use rc_sweep::{FrictionSummary, Summary};
 
 /// Number of bins of the stress distribution.
 const BINS: usize = 80;
@@ -188,8 +188,8 @@ fn tiles(s: &Summary) -> Vec<Tile> {
         tile("maximum pressure", engineering(s.max_pressure, "Pa")),
         tile("stiffness", text::stiffness(s)),
     ];
-    if let (Some(friction), Some(error)) = (s.friction, s.friction_error) {
-        tiles.insert(1, tile("friction", text::with_error(friction, error)));
+    if let Some(FrictionSummary { friction, friction_error, .. }) = s.friction {
+        tiles.insert(1, tile("friction", text::with_error(friction, friction_error)));
     }
     if let (Some(fraction), Some(error)) = (s.plastic_area_fraction, s.plastic_area_fraction_error) {
         tiles.insert(1, tile("plastic area", format!("{} %", text::with_error(100.0 * fraction, 100.0 * error))));

@@ -16,7 +16,7 @@ const LOSSY: f64 = 5.0;
 /// The note, if there is anything to note.
 pub(super) fn of(summary: &Summary, contact: &ContactSetup) -> Option<String> {
     let sliding = contact.sliding.as_ref().filter(|sliding| sliding.speed > 0.0)?;
-    let tangent = summary.max_loss_tangent?;
+    let tangent = summary.friction?.max_loss_tangent;
     if tangent > LOSSY {
         return Some(format!("note: a loss tangent of {} makes the solve slow", digits(tangent, 2)));
     }

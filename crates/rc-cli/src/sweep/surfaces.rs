@@ -76,7 +76,9 @@ impl Surfaces {
         let mut surfaces = Vec::new();
         for (name, values, scene, creep) in &scenes {
             let mut loads = loads(args, control, &scene.contact)?;
-            loads.iter_mut().for_each(|load| *load *= creep.unwrap_or(1.0));
+            for load in &mut loads {
+                *load *= creep.unwrap_or(1.0);
+            }
             check_rows(scenes.len(), args.seeds.as_ref(), loads.len().max(1))?;
             // One scene alone needs no name.
             let in_scene = |error| match error {

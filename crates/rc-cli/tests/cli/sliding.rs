@@ -85,7 +85,8 @@ fn all_forms_of_a_material_are_one() {
     let single = friction(&run(&place, "solve list.toml --glassy-ratio 4 --relaxation-time 1ms --quiet --json"));
     let fractional = friction(&run(&place, "solve solid.toml --quiet --json"));
     assert!((fractional / single - 1.0).abs() < 1e-3 && (first / single - 1.0).abs() > 0.1, "{single}");
-    assert_eq!(friction(&run(&place, "solve list.toml --speed 0 --quiet --json")), 0.0, "at rest");
+    let at_rest = friction(&run(&place, "solve list.toml --speed 0 --quiet --json"));
+    assert_eq!(at_rest.to_bits(), 0, "at rest");
     let printed = run(&place, &format!("solve {SOFT} --pressure 2kPa --speed 0.01 --prony rubber.csv"));
     assert!(text(&printed.stdout).contains("friction ") && text(&printed.stderr).is_empty(), "{printed:?}");
     let fast = run(&place, &format!("solve {SOFT} --pressure 2kPa --speed 1e6 --prony rubber.csv"));
@@ -148,8 +149,8 @@ fn what_cannot_slide_is_refused() {
         &run(&place, of_e_star),
         "pascals.csv: its moduli are in Pa, so the relaxed modulus must be given as young",
     );
-    let profile: String =
-        (0..64).map(|i| format!("{} {}\n", f64::from(i) * 1e-4, 1e-6 * (f64::from(i) * 0.2).sin())).collect();
+    let point = |i: u32| format!("{} {}\n", f64::from(i) * 1e-4, 1e-6 * (f64::from(i) * 0.2).sin());
+    let profile = (0..64).map(point).collect::<Vec<_>>().concat();
     place.write("profile.txt", profile);
     let line = "solve --heights profile.txt --line --unit m --e-star 4MPa --pressure 2kPa --speed 1 --prony rubber.csv --direction 90";
     assert_refused(&run(&place, line), "direction: a profile slides along x; give 0 or 180, not 90");

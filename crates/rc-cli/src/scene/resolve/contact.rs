@@ -259,6 +259,15 @@ mod tests {
         contact(keys, PeriodicCell::new(1.0).expect("a cell"))
     }
 
+    /// Fails unless the keys in each text are refused with a message that begins with the name of the key.
+    fn assert_named(cases: &[(&str, &str)]) {
+        for (text, key) in cases {
+            let keys = ContactKeys { pressure: Some(1.0), ..keys(text) };
+            let error = resolved(keys).expect_err(text).to_string();
+            assert!(error.starts_with(&format!("{key}:")), "{text}: {error}");
+        }
+    }
+
     #[test]
     fn the_control_is_never_assumed() {
         let error = resolved(ContactKeys::default()).expect_err("no control").to_string();
@@ -302,6 +311,13 @@ mod tests {
             ("layer_thickness = 1e-3\nmethod = \"adaptive\"", "method"),
             ("layer_thickness = 1e-3\nborder_level = 1", "border_level"),
             ("layer_thickness = 1e-3\nkernel = \"own\"", "layer_thickness"),
+        ];
+        assert_named(&cases);
+    }
+
+    #[test]
+    fn each_bad_value_of_a_sliding_contact_is_named_with_its_key() {
+        assert_named(&[
             ("speed = 1.0", "speed"),
             ("direction = 90.0", "direction"),
             ("prony = [[1.0, 1.0]]", "prony"),
@@ -325,12 +341,7 @@ mod tests {
             ("speed = 1.0\nprony = [[1.0, 1.0]]\nkernel = \"own\"", "speed"),
             ("speed = 1.0\nprony = [[1.0, 1.0]]\nborder_level = 1", "border_level"),
             ("speed = 1.0\nprony = [[1.0, 1.0]]\nyoung2 = 1e9\npoisson2 = 0.3", "young2"),
-        ];
-        for (text, key) in cases {
-            let keys = ContactKeys { pressure: Some(1.0), ..keys(text) };
-            let error = resolved(keys).expect_err(text).to_string();
-            assert!(error.starts_with(&format!("{key}:")), "{text}: {error}");
-        }
+        ]);
     }
 
     #[test]

@@ -86,7 +86,9 @@ pub(super) fn with_terms(keys: ContactKeys) -> Result<ContactKeys, CliError> {
                 "its moduli are in Pa, so the relaxed modulus must be given as young (with poisson), not as e_star",
             )
         })?;
-        terms.iter_mut().for_each(|[modulus, _]| *modulus /= relaxed);
+        for [modulus, _] in &mut terms {
+            *modulus /= relaxed;
+        }
     }
     Ok(ContactKeys { prony: Some(PronySpec::Terms(terms)), ..keys })
 }
