@@ -77,7 +77,7 @@ def _terms(value: Any) -> list[list[float]]:
         terms = np.empty(0)
     if terms.ndim != 2 or terms.shape[1] != 2:
         raise ValueError("prony: must be a file, a list of pairs (g, tau), or a tuple of two arrays of one length")
-    return [[float(g), float(tau)] for g, tau in terms]
+    return [[float(g), float(tau)] for g, tau in zip(terms[:, 0], terms[:, 1])]
 
 
 def _fractional(value: Mapping[str, float]) -> str:
