@@ -66,3 +66,15 @@ def test_what_cannot_slide_is_refused_in_one_line(keys, message):
     with pytest.raises(ValueError, match=message) as refused:
         rc.solve(**SCENE, **keys)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(("direction", "ahead"), [(0, (1, 0)), (90, (0, 1)), (180, (-1, 0))])
+def test_contact_moves_to_the_leading_side_of_a_summit(direction, ahead):
+    x = (np.arange(64) + 0.5) / 64 - 0.5
+    heights = -1e-6 * (x[None, :] ** 2 + x[:, None] ** 2)
+    solid = {"e_star": 1e7, "glassy_ratio": 10, "relaxation_time": 1e-2}
+    result = rc.solve(heights, cell=1e-3, pressure=1e3, speed=1e-3, direction=direction, **solid)
+    p = result.pressure / result.pressure.sum()
+    centre = np.array([(p * x[None, :]).sum(), (p * x[:, None]).sum()])
+    assert centre @ ahead > 1e-3 and abs(centre @ [ahead[1], ahead[0]]) < 1e-6
+    assert result.friction > 0 and abs(result.lateral_friction) < 1e-6 * result.friction
