@@ -51,6 +51,8 @@ pub struct LevelValues {
     pub rms_pressure: f64,
     /// Penetration Δ, in λ, from the maximum height of the finest grid.
     pub penetration: f64,
+    /// Friction coefficient under a sliding surface. `None` at rest.
+    pub friction: Option<f64>,
 }
 
 /// Friction of a surface that slides steadily over a solid that relaxes.
@@ -60,7 +62,8 @@ pub struct LevelValues {
 pub struct Friction {
     /// μ, the ratio of the force against the velocity to the load: -⟨p ∂h⟩/σ0 along the velocity.
     pub coefficient: f64,
-    /// 95 % error of [`Friction::coefficient`], from its difference to [`Friction::of_displacement`].
+    /// 95 % error of [`Friction::coefficient`], from its differences to [`Friction::of_displacement`] and to the
+    /// coefficient on a coarser grid.
     pub error: f64,
     /// Proven bound on the error that the iteration leaves on this grid: √G ‖∂h‖/σ0, in the norm of (Re L)⁻¹.
     pub bound: f64,

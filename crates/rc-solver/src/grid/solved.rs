@@ -13,6 +13,7 @@ use crate::grid::stiffness::contact_stiffness;
 use crate::grid::uniform_operator::UniformOperator;
 use crate::problem::kernel::OwnedKernel;
 use crate::problem::support::Support;
+use crate::solution::contact_area::moduli::moduli;
 use crate::solution::gap_part::GapPart;
 use crate::solution::observables::Observables;
 use crate::solution::rows::{Halted, Receiver, Rows, TakeRows};
@@ -178,7 +179,11 @@ impl Solved for GridSolved<'_> {
 
     fn observables(&self) -> Observables {
         let boundary = self.response.boundary(self.grid());
-        Observables::of(&self.solution, self.hardness, self.response.edge_bias(self.grid()), boundary)
+        let moduli = match &self.response {
+            Response::Kernel(kernel) => moduli(kernel.get(), &self.solution.pressure),
+            _ => None,
+        };
+        Observables::of(&self.solution, self.hardness, self.response.edge_bias(self.grid()), boundary, moduli)
     }
 
     fn stiffness(&self) -> f64 {

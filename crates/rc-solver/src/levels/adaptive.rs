@@ -18,7 +18,7 @@ use crate::levels::checkpoint::{TileStart, keep, kept};
 use crate::levels::coarse_level::{SolvedLevel, add_work, solve_coarse_level};
 use crate::levels::estimate::Estimate;
 use crate::levels::finest_level::solve_finest_level;
-use crate::levels::grids::{GridLevels, coarser_heights};
+use crate::levels::grids::{GridLevels, SMALLEST_SIDE, coarser_heights};
 use crate::levels::nested::{Begun, History, Levels, Nested};
 use crate::levels::operator_error::{PressureScale, can_certify, certifying_split};
 use crate::levels::tiles::TileLevels;
@@ -97,7 +97,7 @@ impl<'a> TileLevels<'a> {
     /// Solves whole grids up to the base grid.
     fn solve_base(&self, observer: &dyn Observer) -> Begun<TileStart> {
         let (heights, n_above) = (self.data.heights.base(), self.ladder().n_levels());
-        let coarser = coarser_heights(heights, self.boundary());
+        let coarser = coarser_heights(heights, self.boundary(), SMALLEST_SIDE);
         let grids = GridLevels::new(self.kernel.get(), &self.problem, (heights, &coarser), n_above);
         let ((descent, outcome), mut history) = grids.solve_all(&self.nested(grids.n_levels(), observer));
         let function = edge_function(&descent);
@@ -236,6 +236,7 @@ impl Levels for TileLevels<'_> {
         self.ladder().is_even().then(|| LevelValues {
             rms_pressure: rms_pressure(&level.elements, &level.pressure),
             penetration: self.problem.h_max + level.outcome.approach,
+            friction: None,
         })
     }
 

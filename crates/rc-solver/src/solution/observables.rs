@@ -46,9 +46,24 @@ impl Observables {
     ///
     /// It passes over the fields once, or twice with a hardness. `bias` shifts the edges of contacts. The pressure is
     /// at most the `hardness`.
-    pub(crate) fn of(solution: &GridSolution, hardness: f64, bias: EdgeBias, boundary: Boundary) -> Self {
+    ///
+    /// Under a sliding surface, edges have the first of `moduli`. The others show how far the area depends on them.
+    pub(crate) fn of(
+        solution: &GridSolution,
+        hardness: f64,
+        bias: EdgeBias,
+        boundary: Boundary,
+        moduli: Option<[[f64; 2]; 3]>,
+    ) -> Self {
         let fields = [&solution.pressure, &solution.gap];
-        let area = ContactArea::of_hard(fields, hardness, bias, boundary);
+        let area = match moduli {
+            None => ContactArea::of_hard(fields, hardness, bias, boundary),
+            Some(moduli) => {
+                let [best, others @ ..] = moduli.map(|moduli| ContactArea::with_moduli(fields, hardness, bias, moduli));
+                let off = others.iter().map(|other| (other.fraction - best.fraction).abs()).fold(0.0, f64::max);
+                ContactArea { error: best.error.hypot(MODULI * off).min(1.0), ..best }
+            }
+        };
         let plastic = hardness.is_finite().then(|| PlasticEdges::of(fields, hardness, bias, boundary));
         let pressure = &solution.pressure;
         let rms = parallel::rms(pressure.values(), pressure.grid().nx());
@@ -133,6 +148,11 @@ impl Observables {
         }
     }
 }
+
+/// 95 % error of the area under a sliding surface, for each unit of its change by other moduli at edges.
+///
+/// `docs/accuracy.md` has its measurement.
+const MODULI: f64 = 4.0;
 
 /// The rms pressure, corrected for the error of Σ p² at edges of contacts.
 fn corrected(rms_pressure: f64, area: &ContactArea) -> f64 {

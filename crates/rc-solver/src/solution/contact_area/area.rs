@@ -220,6 +220,27 @@ impl ContactArea {
         Self::from_sums(&[sums], grid, bias)
     }
 
+    /// [`ContactArea::of_hard`] on a periodic cell, with moduli M of edges across x and across y in place of E* = 1.
+    pub(crate) fn with_moduli(fields: [&Field; 2], hardness: f64, bias: EdgeBias, moduli: [f64; 2]) -> Self {
+        let grid = fields[0].grid();
+        let values = fields.map(Field::values);
+        let between = (moduli[0] * moduli[1]).sqrt();
+        let at = |place: [usize; 2]| {
+            let around = around(values, [grid.nx(), grid.ny()], place, Boundary::Periodic);
+            move |dx: isize, dy: isize| {
+                let [pressure, gap] = around(dx, dy);
+                let modulus = match (dx, dy) {
+                    (_, 0) => moduli[0],
+                    (0, _) => moduli[1],
+                    _ => between,
+                };
+                [pressure, modulus * gap]
+            }
+        };
+        let sums = sums_of_rows((grid, Boundary::Periodic), hardness, |i| values[0][i] > 0.0, at);
+        Self::from_sums(&[sums], grid, bias)
+    }
+
     /// The contact area from sums over elements of one size each.
     ///
     /// The smallest elements, those of the grid `finest`, come first. Then come those twice as large, and so on.
