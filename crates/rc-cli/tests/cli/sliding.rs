@@ -50,7 +50,7 @@ fn friction_is_that_of_the_library() {
     }
     let power = number(&summary, "friction") * number(&summary, "mean_pressure") * 0.02;
     assert!((number(&summary, "dissipated_power") / power - 1.0).abs() < 1e-9, "W/m²");
-    assert!(friction.coefficient > 100.0 * friction.bound.min(friction.error) && friction.coefficient > 1e-3);
+    assert!(friction.coefficient > 5.0 * friction.error && friction.coefficient > 1e-3, "{friction:?}");
     // The scene of the result has the terms, and repeats it without the file.
     std::fs::remove_file(place.path("rubber.csv")).expect("the file is there");
     assert_solved(&run(&place, "solve r --quiet --out again"));
