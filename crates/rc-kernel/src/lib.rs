@@ -41,6 +41,7 @@ mod alias_sum;
 mod averages;
 mod bessel;
 mod chebyshev;
+mod creep;
 mod error;
 mod free_love;
 mod gauss_legendre;

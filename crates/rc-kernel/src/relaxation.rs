@@ -123,6 +123,14 @@ impl Relaxation {
         }
     }
 
+    /// The pairs of g and τ, in increasing order of τ. `None` of a fractional solid.
+    pub(crate) fn terms(&self) -> Option<&[[f64; 2]]> {
+        match &self.0 {
+            Kind::Prony(terms) => Some(terms),
+            Kind::Fractional { .. } => None,
+        }
+    }
+
     /// J~(ω) = E∞/E~(ω).
     #[must_use]
     pub fn compliance(&self, omega: f64) -> Complex64 {

@@ -8,6 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use crate::content::Cells;
+use crate::friction::FrictionSummary;
 use crate::leakage::LeakageSummary;
 use crate::memory;
 use crate::origin::MapOrigin;
@@ -111,6 +112,9 @@ pub struct Summary {
     /// Estimated error of `conductance`, in its unit.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
     pub conductance_error: Option<Option<f64>>,
+    /// Friction of a surface that slides. Its keys exist only with a speed, and are 0 at the speed 0.
+    #[serde(flatten)]
+    pub friction: Option<FrictionSummary>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
     /// rms height about the mean (m).
@@ -203,6 +207,8 @@ pub struct SolveContext {
     pub threads: usize,
     /// Harmonic mean of the conductivities of the bodies, if they are given.
     pub conductivity: Option<f64>,
+    /// Whether a speed is given, which may be 0.
+    pub slides: bool,
 }
 
 /// The tolerance relative to the range of heights, and that of the energy.
@@ -236,8 +242,7 @@ impl Summary {
     /// The summary of `solution` in SI units. Its memory is the peak of the process so far.
     #[must_use]
     pub fn of(solution: &Solution<'_>, units: Units, context: &SolveContext) -> Self {
-        let (info, [tolerance, energy_tolerance]) = (solution.info(), tolerances(solution.bound()));
-        let (observables, [of_spots, error_of_spots]) = (solution.observables(), conductance(solution, units));
+        let (info, observables, of_spots) = (solution.info(), solution.observables(), conductance(solution, units));
         Self {
             status: solution.status().name().to_owned(),
             control: context.control.key().to_owned(),
@@ -269,10 +274,11 @@ impl Summary {
             mean_gap: units.metres(observables.mean_gap),
             mean_gap_error: Some(units.metres(observables.mean_gap_error)),
             contact_stiffness: finite(units.pascals_per_metre(solution.stiffness())),
-            contact_conductance: of_spots,
-            contact_conductance_error: error_of_spots,
-            conductance: context.conductivity.map(|of_bodies| of_spots.map(|per_unit| per_unit * of_bodies)),
-            conductance_error: context.conductivity.map(|of_bodies| error_of_spots.map(|error| error * of_bodies)),
+            contact_conductance: of_spots[0],
+            contact_conductance_error: of_spots[1],
+            conductance: context.conductivity.map(|of_bodies| of_spots[0].map(|per_unit| per_unit * of_bodies)),
+            conductance_error: context.conductivity.map(|of_bodies| of_spots[1].map(|error| error * of_bodies)),
+            friction: context.slides.then(|| FrictionSummary::of(solution, units)),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,
@@ -281,8 +287,8 @@ impl Summary {
             penetration_error: info.certificate.penetration,
             energy_error: Some(info.certificate.energy),
             load_error: info.certificate.load,
-            tolerance,
-            energy_tolerance,
+            tolerance: tolerances(solution.bound())[0],
+            energy_tolerance: tolerances(solution.bound())[1],
             cells_evaluated: Some(solution.n_evaluated()),
             cells_proven: Some(solution.n_proven()),
             level_iterations: Some(info.levels.iter().map(|level| level.iterations).collect()),

@@ -4,9 +4,14 @@ use rc_sweep::Cells;
 use serde_json::Value;
 
 /// Numbers that say how a result was found, and not what it is.
-const BOOKKEEPING: [&str; 21] = [
+const BOOKKEEPING: [&str; 26] = [
     "seed",
     "control_value",
+    "speed",
+    "time",
+    "gmres_iterations",
+    "monotone_steps",
+    "friction_bound",
     "grid",
     "border_level",
     "elements",
@@ -29,7 +34,7 @@ const BOOKKEEPING: [&str; 21] = [
 ];
 
 /// Units of columns; others have none.
-const UNITS: [(&str, &str); 21] = [
+const UNITS: [(&str, &str); 24] = [
     ("mean_pressure", "Pa"),
     ("rms_pressure", "Pa"),
     ("rms_pressure_corrected", "Pa"),
@@ -51,9 +56,12 @@ const UNITS: [(&str, &str); 21] = [
     ("permeance_y", "m³"),
     ("flow_x", "m³/s"),
     ("flow_y", "m³/s"),
+    ("dissipated_power", "W/m²"),
+    ("speed", "m/s"),
+    ("time", "s"),
 ];
 
-/// A quantity that is drawn against the pressure.
+/// A quantity that is drawn against the pressure, the speed or the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Quantity {
     /// Name of its pictures, and its key on the page.
@@ -66,12 +74,18 @@ pub(crate) struct Quantity {
     pub(crate) unit: &'static str,
 }
 
-/// The mean pressure, against which the others are drawn.
+/// The mean pressure, against which the others are drawn, if neither speed nor time is varied.
 pub(crate) const PRESSURE: Quantity =
     Quantity { name: "pressure", keys: &["mean_pressure"], words: "mean pressure", unit: "Pa" };
 
+/// The varied keys against which the others are drawn.
+pub(crate) const SWEPT: [Quantity; 2] = [
+    Quantity { name: "speed", keys: &["speed"], words: "speed", unit: "m/s" },
+    Quantity { name: "time", keys: &["time"], words: "time", unit: "s" },
+];
+
 /// The quantities that are drawn.
-pub(crate) const QUANTITIES: [Quantity; 8] = [
+pub(crate) const QUANTITIES: [Quantity; 10] = [
     Quantity { name: "area", keys: &["area_fraction"], words: "contact area A/A0", unit: "" },
     Quantity { name: "gap", keys: &["mean_gap"], words: "mean gap", unit: "m" },
     Quantity { name: "penetration", keys: &["penetration"], words: "penetration", unit: "m" },
@@ -90,6 +104,8 @@ pub(crate) const QUANTITIES: [Quantity; 8] = [
         unit: "m³",
     },
     Quantity { name: "flow", keys: &["flow_x", "flow_y"], words: "flow, mean of x and y", unit: "m³/s" },
+    Quantity { name: "friction", keys: &["friction"], words: "friction coefficient", unit: "" },
+    Quantity { name: "loss-tangent", keys: &["max_loss_tangent"], words: "maximum loss tangent", unit: "" },
 ];
 
 impl Quantity {

@@ -65,7 +65,7 @@ fn load(row: &Row) -> String {
 /// A point of a curve with the errors of both coordinates, in SI units.
 type Point = [Mean; 2];
 
-/// A quantity against the mean pressure.
+/// A quantity against the mean pressure, the speed or the time.
 struct CurvePicture {
     name: &'static str,
     title: String,
@@ -80,7 +80,9 @@ struct CurvePicture {
 impl CurvePicture {
     /// The picture of `quantity`; `None` if no row has it.
     fn of(table: &SweepTable, quantity: Quantity) -> Option<Self> {
-        let scenes: Vec<(String, Vec<Point>)> = table.scenes().into_iter().map(|rows| curve(rows, quantity)).collect();
+        let against = table.against;
+        let of_scene = |rows| curve(rows, [against, quantity]);
+        let scenes: Vec<(String, Vec<Point>)> = table.scenes().into_iter().map(of_scene).collect();
         if scenes.iter().all(|(_, points)| points.is_empty()) {
             return None;
         }
@@ -88,7 +90,7 @@ impl CurvePicture {
         let lines = if quantity.name == "area" { persson(table) } else { Vec::new() };
         let theory: Vec<_> = lines.into_iter().map(|line| (line.scene, line.points)).collect();
         // The gap falls with the logarithm of the load.
-        let log_y = quantity.name != "gap" && (is_log || spans_decades(&scenes));
+        let log_y = quantity.name != "gap" && (is_log && against == PRESSURE || spans_decades(&scenes));
         // Nothing is drawn at a zero of a logarithmic axis.
         let is_shown = |at: &&Point| !log_y || at[1].value > 0.0;
         let points = || scenes.iter().flat_map(|(_, points)| points).filter(is_shown);
@@ -106,7 +108,7 @@ impl CurvePicture {
         Some(Self {
             name: if quantity.name == "of_bodies" { "conductance-of-bodies" } else { quantity.name },
             title: format!("{}{}{of_seeds}", title[..1].to_uppercase(), &title[1..]),
-            x: Axis::of(PRESSURE.words, PRESSURE.unit, is_log, ends(0, is_log)),
+            x: Axis::of(against.words, against.unit, is_log, ends(0, is_log)),
             y: Axis::of(quantity.words, quantity.unit, log_y, ends(1, log_y)),
             scenes,
             theory,
@@ -142,10 +144,10 @@ fn spans_decades(scenes: &[(String, Vec<Point>)]) -> bool {
 
 /// The curve of a scene: means over the seeds at loads that all have, with their errors; if there is no such load, of
 /// those that are there.
-fn curve(rows: &[Row], quantity: Quantity) -> (String, Vec<Point>) {
+fn curve(rows: &[Row], [against, quantity]: [Quantity; 2]) -> (String, Vec<Point>) {
     let common = AtLoad::of_all_seeds(rows);
     let loads = if common.is_empty() { AtLoad::all(rows) } else { common };
-    let points = loads.iter().filter_map(|at| Some([at.mean(PRESSURE)?, at.mean(quantity)?]));
+    let points = loads.iter().filter_map(|at| Some([at.mean(against)?, at.mean(quantity)?]));
     (rows.first().map(|row| row.label.clone()).unwrap_or_default(), points.collect())
 }
 
@@ -197,7 +199,7 @@ mod tests {
             Row { load, seed: Some(1), cells: cells.as_object().expect("an object").clone(), ..Row::default() }
         };
         let rows = [(1e5, 1e-17), (2e5, 2e-20), (3e5, 0.0), (1e7, 0.0)].map(row).to_vec();
-        let table = SweepTable { rows, settings: None };
+        let table = SweepTable { rows, settings: None, against: PRESSURE };
         let quantity = QUANTITIES.into_iter().find(|one| one.name == "permeance").expect("a quantity");
         let CurvePicture { x, y, .. } = CurvePicture::of(&table, quantity).expect("flows");
         assert!(y.is_log && y.range.0 > 5e-21 && y.range.1 < 2e-17, "{y:?}");

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::frames::Frames;
 use super::page::{Page, Text, Tile, made};
 use super::{percolation, sweep_command};
-use crate::curves::columns::{PRESSURE, QUANTITIES, Quantity, bar_of};
+use crate::curves::columns::{PRESSURE, QUANTITIES, Quantity, SWEPT, bar_of};
 use crate::curves::means::{AtLoad, Mean};
 use crate::curves::sealing::Sealing;
 use crate::curves::table::{Row, SweepTable};
@@ -24,6 +24,8 @@ use rc_sweep::WarningCode;
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Curves {
     scenes: Vec<SceneCurves>,
+    /// What the quantities are drawn against: `pressure`, `speed` or `time`.
+    against: &'static str,
     /// Whether the loads have a constant ratio, so that logarithmic axes show them evenly.
     geometric: bool,
     persson: Vec<PerssonLine>,
@@ -71,16 +73,11 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
     let files = text.map(|text| Text { title: "Settings of the sweep", text }).into_iter().collect();
     Ok(Page {
         title: format!("Sweep: {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
-        subtitle: format!(
-            "{} on {}, at prescribed {}s",
-            count(rows.len(), "row"),
-            count(table.surfaces().len(), if is_varied(rows) { "problem" } else { "surface" }),
-            rows[0].control
-        ),
+        subtitle: subtitle(&table),
         status,
         good,
         warnings: warnings(rows),
-        tiles: tiles(rows),
+        tiles: tiles(&table),
         commands: settings.map_or_else(Vec::new, sweep_command::commands),
         files,
         made: made(),
@@ -92,6 +89,16 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
 /// Whether keys of the scenes were varied, of which some change the surface and others the contact.
 fn is_varied(rows: &[Row]) -> bool {
     rows.iter().any(|row| row.label != row.scene)
+}
+
+fn subtitle(table: &SweepTable) -> String {
+    let n = |what| count(table.surfaces().len(), what);
+    let (rows, control) = (count(table.rows.len(), "row"), &table.rows[0].control);
+    if table.against == PRESSURE {
+        format!("{rows} on {}, at prescribed {control}s", n(if is_varied(&table.rows) { "problem" } else { "surface" }))
+    } else {
+        format!("{rows} in {}, at several {control}s", n("curve"))
+    }
 }
 
 /// One line for each code of a warning, with the number of its rows.
@@ -137,7 +144,7 @@ impl SceneCurves {
 /// The point with value and error of each quantity that has them.
 fn point(of: impl Fn(Quantity) -> Option<[f64; 2]>) -> Point {
     let mut point = Point::new();
-    for quantity in [PRESSURE].into_iter().chain(QUANTITIES) {
+    for quantity in [PRESSURE].into_iter().chain(SWEPT).chain(QUANTITIES) {
         if let Some([value, error]) = of(quantity) {
             point.insert(quantity.name.to_owned(), value);
             point.insert(format!("{}_error", quantity.name), error);
@@ -146,7 +153,8 @@ fn point(of: impl Fn(Quantity) -> Option<[f64; 2]>) -> Point {
     point
 }
 
-fn tiles(rows: &[Row]) -> Vec<Tile> {
+fn tiles(table: &SweepTable) -> Vec<Tile> {
+    let (rows, against) = (&table.rows, table.against);
     let range = |key: &str| {
         let values = rows.iter().filter_map(|row| row.number(key));
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
@@ -158,13 +166,17 @@ fn tiles(rows: &[Row]) -> Vec<Tile> {
     };
     let (low, high) = range("area_fraction");
     let seconds: f64 = rows.iter().filter_map(|row| row.number("wall_seconds")).sum();
-    vec![
+    let (least, most) = range("friction");
+    let friction = (most >= least).then(|| format!("{} – {}", digits(least, 3), digits(most, 3)));
+    let friction = friction.map(|value| Tile { name: "friction", value });
+    let tiles = vec![
         Tile { name: "rows", value: rows.len().to_string() },
-        Tile { name: "mean pressure", value: from_to("mean_pressure", "Pa") },
+        Tile { name: against.words, value: from_to(against.key(), against.unit) },
         Tile { name: "contact area", value: format!("{} – {} %", digits(100.0 * low, 3), digits(100.0 * high, 3)) },
         Tile { name: "penetration", value: from_to("penetration", "m") },
         Tile { name: "time of all rows", value: format!("{} s", digits(seconds, 3)) },
-    ]
+    ];
+    tiles.into_iter().chain(friction).collect()
 }
 
 fn body(folder: &Path, table: &SweepTable) -> Result<Curves, CliError> {
@@ -181,12 +193,16 @@ fn body(folder: &Path, table: &SweepTable) -> Result<Curves, CliError> {
     };
     let name = if is_varied(&table.rows) { "variation" } else { "scene" };
     let mut heads = if several { vec![name] } else { Vec::new() };
-    heads.extend(["seed", "mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness"]);
+    let against = (table.against != PRESSURE).then_some(table.against);
+    heads.push("seed");
+    heads.extend(against.map(|quantity| quantity.words));
+    heads.extend(["mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness"]);
     heads.extend(MORE.into_iter().filter(|column| column.is_in(&table.rows)).map(|column| column.head));
     heads.push("status");
     let persson = persson(table);
     Ok(Curves {
         sealing,
+        against: table.against.name,
         geometric: table.is_geometric(),
         means: means(table, name),
         heads,
@@ -243,7 +259,7 @@ fn means(table: &SweepTable, name: &'static str) -> Option<Table> {
         return None;
     }
     let has = |quantity: &Quantity| all.iter().any(|at| at.mean(*quantity).is_some());
-    let shown: Vec<Quantity> = [PRESSURE].into_iter().chain(QUANTITIES).filter(has).collect();
+    let shown: Vec<Quantity> = [PRESSURE].into_iter().chain(SWEPT).chain(QUANTITIES).filter(has).collect();
     let mut heads = if several { vec![name] } else { Vec::new() };
     heads.push("surfaces");
     heads.extend(shown.iter().map(|quantity| quantity.words));
@@ -262,13 +278,18 @@ fn cells(row: &Row, several: bool, all: &[Row]) -> Vec<String> {
     let of = |key: &str, unit| row.number(key).map_or_else(|| "–".to_owned(), |value| engineering(value, unit));
     let [area, error] = ["area_fraction", "area_fraction_error"].map(|key| 100.0 * row.number(key).unwrap_or(0.0));
     let mut cells = if several { vec![row.label.clone()] } else { Vec::new() };
+    cells.push(row.seed.map_or_else(|| "–".to_owned(), |seed| seed.to_string()));
+    cells.extend(SWEPT.iter().any(|one| one.name == row.control).then(|| row.load_in_words()));
     cells.extend([
-        row.seed.map_or_else(|| "–".to_owned(), |seed| seed.to_string()),
         of("mean_pressure", "Pa"),
         of("penetration", "m"),
         text::with_error(area, error),
         of("mean_gap", "m"),
-        row.number("contact_stiffness").map_or_else(|| "infinite".to_owned(), |value| engineering(value, "Pa/m")),
+        match row.number("contact_stiffness") {
+            Some(value) => engineering(value, "Pa/m"),
+            None if row.cells.contains_key("contact_stiffness") => "infinite".to_owned(),
+            None => "–".to_owned(),
+        },
     ]);
     cells.extend(MORE.iter().filter(|column| column.is_in(all)).map(|column| column.cell(row)));
     cells.push(row.status.replace('_', " "));
@@ -281,7 +302,8 @@ struct Column {
     key: &'static str,
 }
 
-const MORE: [Column; 5] = [
+const MORE: [Column; 6] = [
+    Column { head: "friction", key: "friction" },
     Column { head: "conductance (W/(m² K) or S/m²)", key: "conductance" },
     Column { head: "permeance along x (m³)", key: "permeance_x" },
     Column { head: "permeance along y (m³)", key: "permeance_y" },

@@ -7,8 +7,8 @@ use rc_sweep::memory::Budget;
 use rc_sweep::{Summary, Warning};
 
 use super::checked::CheckedScene;
-use super::dry_run;
 use super::solved::Solved;
+use super::{dry_run, sliding_note};
 use crate::error::CliError;
 use crate::export::zarr;
 use crate::files::kind::Kind;
@@ -175,6 +175,9 @@ impl Job {
                 let text = text::solved(summary, units.cell().sides(), units.elasticity().e_star());
                 let is_lost = self.scene.contact.keys.elements && !has_elements;
                 let note = if is_lost { NO_ELEMENTS } else { "" };
+                if let Some(note) = sliding_note::of(summary, &self.scene.contact) {
+                    terminal::tell(&note);
+                }
                 terminal::print(&(text + note + &text::written(self.run.out.as_deref())))
             }
         }

@@ -81,6 +81,7 @@ impl ResultFiles<'_> {
             wall,
             threads,
             conductivity: self.contact.keys.conductivity.map(Conductivity::mean),
+            slides: self.contact.sliding.is_some(),
         };
         let leakage = self.flow.map(|flow| flow.summary.clone());
         let summary = Summary::of(self.solution, self.contact.units, &context);

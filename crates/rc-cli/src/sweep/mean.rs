@@ -92,6 +92,8 @@ fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
     let given = [
         ("seeds", args.seeds.is_some(), "it chooses the seeds; --seed gives the first one"),
         ("vary", !args.vary.is_empty(), "a mean has one problem"),
+        ("times", args.times.is_some(), "a mean has one problem"),
+        ("speeds", args.speeds.is_some(), "a mean has one problem"),
         ("shard", args.shard.is_some(), "what is solved next depends on earlier results"),
         ("list", args.list.is_some(), "what is solved next depends on earlier results"),
         ("fields", args.fields, "its rows have none"),

@@ -2,6 +2,7 @@
 
 pub(crate) mod args;
 mod bar;
+mod creep;
 mod doubts;
 pub(crate) mod interrupt;
 mod list;

@@ -17,6 +17,7 @@ mod rectangles;
 mod report;
 mod robustness;
 mod shapes;
+mod sliding;
 mod solids;
 mod solve;
 mod spectrum;
