@@ -241,6 +241,7 @@ fn conductance(solution: &Solution<'_>, units: Units) -> [Option<f64>; 2] {
 impl Summary {
     /// The summary of `solution` in SI units. Its memory is the peak of the process so far.
     #[must_use]
+    #[expect(clippy::too_many_lines, reason = "one line for each key")]
     pub fn of(solution: &Solution<'_>, units: Units, context: &SolveContext) -> Self {
         let (info, observables, of_spots) = (solution.info(), solution.observables(), conductance(solution, units));
         Self {

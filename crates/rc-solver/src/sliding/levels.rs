@@ -40,17 +40,16 @@ pub(crate) fn solve_sliding(
     let full = full_contact::mean_pressure(&problem).and_then(|mean_pressure| {
         full_contact::solve((heights, &coarser), kernel, mean_pressure, &problem, params.bound)
     });
-    let (mut solution, work) = match full {
-        Some(solution) => (solution, Work::default()),
-        None => {
-            let levels = SlidingLevels { grids: GridLevels::new(kernel, &problem, (heights, &coarser), 0), kernel };
-            let n_levels = levels.grids.n_levels();
-            let nested = Nested { problem: &problem, params: *params, n_levels, observer };
-            let begun = Begun { above: n_levels - 1, start: Start::Nothing, history: History::default() };
-            let ((sliding, outcome), history) = nested.solve(&levels, nested.climb(&levels, begun, 0));
-            let work = sliding.work;
-            (sliding.descent.into_solution(&outcome, history.levels, history.coarser), work)
-        }
+    let (mut solution, work) = if let Some(solution) = full {
+        (solution, Work::default())
+    } else {
+        let levels = SlidingLevels { grids: GridLevels::new(kernel, &problem, (heights, &coarser), 0), kernel };
+        let n_levels = levels.grids.n_levels();
+        let nested = Nested { problem: &problem, params: *params, n_levels, observer };
+        let begun = Begun { above: n_levels - 1, start: Start::Nothing, history: History::default() };
+        let ((sliding, outcome), history) = nested.solve(&levels, nested.climb(&levels, begun, 0));
+        let work = sliding.work;
+        (sliding.descent.into_solution(&outcome, history.levels, history.coarser), work)
     };
     solution.info.friction = friction(&solution, heights, kernel, work);
     Ok(solution)
@@ -62,7 +61,7 @@ struct SlidingLevels<'a> {
     kernel: &'a dyn Kernel,
 }
 
-impl<'a> SlidingLevels<'a> {
+impl SlidingLevels<'_> {
     /// The pressure on the coarsest grid of an elastic solid with the storage modulus of each wave.
     fn elastic_start(&self, above: usize, storage: GridResponse, goal: Goal, observer: &dyn Observer) -> Start {
         let grid = self.grids.grid(above);

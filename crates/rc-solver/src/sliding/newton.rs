@@ -11,7 +11,7 @@ use crate::descent::gmres::{self, ActiveElements, LinearSystem};
 use crate::descent::operators::PreconditionedOperator;
 use crate::descent::outcome::Outcome;
 use crate::descent::run::{DescentObserver, Goal};
-use crate::descent::state::Descent;
+use crate::descent::state::{Descent, Follows};
 use crate::descent::stop::Stopped;
 use crate::descent::sums::GapSums;
 
@@ -130,7 +130,8 @@ impl<'a> SlidingDescent<'a> {
                 return Ok(Some(next));
             }
             let descent = &mut self.descent;
-            (descent.pressure.copy_from_slice(&before.0), descent.gap.copy_from_slice(&before.1));
+            descent.pressure.copy_from_slice(&before.0);
+            descent.gap.copy_from_slice(&before.1);
             (descent.zero_gap, descent.pressed) = (zero_gap, pressed);
             descent.directions.active.copy_from_slice(&elements.active);
         }
@@ -148,7 +149,9 @@ impl<'a> SlidingDescent<'a> {
         descent.precondition_mean(sums, set.n);
         let elements = ActiveElements::new(descent.directions.active.clone(), descent.layout.len());
         let mut residual = elements.gather(&descent.directions.preconditioned);
-        residual.iter_mut().for_each(|value| *value = -*value);
+        for value in &mut residual {
+            *value = -*value;
+        }
         let operator = &mut *descent.operators.corrections;
         let mut system = LinearSystem { operator, elements: &elements, fixed_mean: set.fixed_mean };
         // A step that gains little is limited by the choice of active elements, not by its accuracy.
@@ -202,7 +205,10 @@ impl<'a> SlidingDescent<'a> {
     /// What the operators differ in is a part of the gap that stays.
     fn exchange(&mut self) {
         std::mem::swap(&mut self.descent.operators.corrections, &mut self.storage);
-        self.descent.has_constant = !self.descent.has_constant;
+        self.descent.follows = match self.descent.follows {
+            Follows::Pressure => Follows::Changes,
+            Follows::Changes => Follows::Pressure,
+        };
         self.descent.start_afresh();
     }
 }

@@ -4,7 +4,7 @@
 //! of. Across an edge these are waves of a few elements; along it, those of the chord of the contact. Where an edge
 //! moves across, its short waves are glassy. Where it moves along itself, its material relaxes as it passes the chord.
 
-use rc_core::{Field, Grid, Kernel};
+use rc_core::{Complex64, Field, Grid, Kernel};
 
 /// Elements in a wave that an edge is made of.
 const ELEMENTS: f64 = 2.0;
@@ -18,13 +18,13 @@ pub(crate) fn moduli(kernel: &dyn Kernel, pressure: &Field) -> Option<[[f64; 2];
     let chords = chords(pressure);
     let (nx, ny) = (grid.nx() as i64, grid.ny() as i64);
     let within = |waves: f64, n: i64| (waves.round() as i64).clamp(0, n / 2);
-    let modulus = |kx: i64, ky: i64| match (kx, ky) {
-        (0, 0) => 1.0,
-        _ => {
-            // Both mirror images of an edge occur.
-            let both = [slides(kx, ky), slides(kx, -ky)].map(|symbol| symbol.norm());
-            2.0 * rest(kx as usize, ky as usize) / (both[0] + both[1])
+    let modulus = |kx: i64, ky: i64| {
+        if (kx, ky) == (0, 0) {
+            return 1.0;
         }
+        // Both mirror images of an edge occur.
+        let both = [slides(kx, ky), slides(kx, -ky)].map(Complex64::norm);
+        2.0 * rest(kx as usize, ky as usize) / (both[0] + both[1])
     };
     let of_waves = |factor: f64| {
         let across = |n: i64| within(factor * n as f64 / ELEMENTS, n);
