@@ -10,6 +10,9 @@ use rc_theory::hunter::Hunter;
 
 use crate::assert_close;
 
+/// The element from which another gets its value.
+type Places<'a> = &'a dyn Fn(usize, usize) -> [usize; 2];
+
 fn problem<'a>(heights: &'a Field, kernel: &'a dyn Kernel, load: f64) -> ContactProblem<'a> {
     ContactProblem::new(heights, Control::MeanPressure(load)).with_kernel(kernel)
 }
@@ -181,7 +184,7 @@ fn mirrored_and_turned_surfaces_have_mirrored_and_turned_contacts() {
     let n = 96;
     let heights = rough(3, n);
     let grid = heights.grid();
-    let place = |f: &dyn Fn(usize, usize) -> [usize; 2], field: &Field| {
+    let place = |f: Places<'_>, field: &Field| {
         let values = (0..n * n).map(|i| {
             let [x, y] = f(i % n, i / n);
             field.at(x, y)
@@ -195,7 +198,7 @@ fn mirrored_and_turned_surfaces_have_mirrored_and_turned_contacts() {
         }];
     for kernel in relaxed {
         let along = solved(&heights, &*kernel(DVec2::X), 1e-3, 1e-9);
-        let cases: [(&dyn Fn(usize, usize) -> [usize; 2], DVec2, f64); 3] = [
+        let cases: [(Places<'_>, DVec2, f64); 3] = [
             // Mirrored along x, and sliding backwards.
             (&|x, y| [n - 1 - x, y], -DVec2::X, -1.0),
             // Exchanged axes, and sliding along y. Left and right are exchanged too.
