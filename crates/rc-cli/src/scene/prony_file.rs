@@ -79,6 +79,11 @@ impl Titles {
     fn of(line: &str) -> Result<Self, String> {
         let mut titles = Self::default();
         let name: String = line.chars().take_while(|c| !c.is_whitespace() && !",;([".contains(*c)).collect();
+        if ["tau", "τ", "t", "time"].iter().any(|time| {
+            name.trim_end_matches(|c: char| c == '_' || c.is_ascii_digit() || c == 'i').eq_ignore_ascii_case(time)
+        }) {
+            return Err(format!("the first column is '{name}'; the modulus comes first, then the relaxation time"));
+        }
         let index = name.strip_prefix('E').map(|index| index.trim_start_matches('_'));
         if index.is_some_and(|index| index.chars().all(|c| c.is_ascii_digit() || "ink".contains(c))) {
             titles.pascals = Some(1.0);
@@ -104,6 +109,14 @@ impl Titles {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn exchanged_columns_are_refused() {
+        for title in ["tau (s), g", "tau_i, E (MPa)", "t g", "# time; modulus"] {
+            let refused = PronyFile::of(&[[1e-3, 3.0]], &format!("{title}\n1e-3 3\n"));
+            assert!(refused.expect_err(title).contains("the modulus comes first"), "{title}");
+        }
+    }
 
     #[test]
     fn titles_give_units() {

@@ -69,7 +69,7 @@ pub struct Friction {
     pub bound: f64,
     /// μ from the displacement, -⟨p ∂v⟩/σ0.
     pub of_displacement: f64,
-    /// The same as [`Friction::coefficient`] across the velocity, positive to its left.
+    /// Ratio to the load of the force on the solid across the velocity, positive to its left.
     pub lateral: f64,
     /// Dissipated power per nominal area, in E* λ per unit of time.
     pub power: f64,

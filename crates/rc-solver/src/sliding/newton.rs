@@ -18,9 +18,6 @@ use crate::descent::sums::GapSums;
 /// Range of the residual that GMRES leaves of the system of a Newton step, relative to its right side.
 const REDUCTIONS: [f64; 2] = [0.1, 0.4];
 
-/// Maximum number of directions of GMRES, whose vectors have values of the active elements only.
-const DIRECTIONS: usize = 40;
-
 /// Parts of a Newton step that are tried.
 const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 
@@ -93,12 +90,13 @@ impl<'a> SlidingDescent<'a> {
             if rounds == 0 {
                 fallback.failures = 0;
             }
-            if self.descent.info.iterations >= ITERATIONS * goal.max_iterations || rounds > PATIENCE {
+            let most = ITERATIONS * goal.max_iterations;
+            if self.descent.info.iterations >= most || rounds > PATIENCE || error.is_nan() {
                 sums = self.descent.refresh();
                 return self.descent.unfinished(goal, &sums);
             }
             let next = match self.newton_step(&sums, watch.observer) {
-                Ok(None) => self.storage_rounds(&sums, &mut fallback, watch.observer),
+                Ok(None) => self.storage_rounds(&sums, &mut fallback, (most, watch.observer)),
                 Ok(Some(next)) => Ok(next),
                 Err(stopped) => Err(stopped),
             };
@@ -156,7 +154,8 @@ impl<'a> SlidingDescent<'a> {
         let mut system = LinearSystem { operator, elements: &elements, fixed_mean: set.fixed_mean };
         // A step that gains little is limited by the choice of active elements, not by its accuracy.
         let reduction = (0.5 * self.last_ratio).clamp(REDUCTIONS[0], REDUCTIONS[1]);
-        let (step, iterations) = system.solve(residual, gmres::Goal { reduction, directions: DIRECTIONS }, observer)?;
+        let directions = gmres::directions(elements.len(), descent.pressure.len());
+        let (step, iterations) = system.solve(residual, gmres::Goal { reduction, directions }, observer)?;
         elements.scatter(&step, &mut descent.directions.direction);
         self.work.gmres_iterations += iterations;
         descent.info.iterations += iterations.max(1);
@@ -175,11 +174,14 @@ impl<'a> SlidingDescent<'a> {
         &mut self,
         sums: &GapSums,
         fallback: &mut Fallback,
-        observer: &dyn Observer,
+        (most_iterations, observer): (usize, &dyn Observer),
     ) -> Result<GapSums, Stopped> {
         let ([steps, rounds], mut sums) = (fallback.next(), *sums);
         let steps_of_round = if self.storage.keeps_steps() { 2 } else { 1 };
         for _ in 0..steps {
+            if self.descent.info.iterations >= most_iterations {
+                break;
+            }
             let wanted = INNER * self.descent.error(&sums);
             self.exchange();
             for _ in 0..rounds {

@@ -13,6 +13,7 @@ use rc_kernel::{FreeLove, HalfSpace, Love};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet};
 
 use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
+use crate::grid::factors::Factors;
 use crate::grid::operators::SymbolOperator;
 use crate::grid::uniform_operator::UniformOperator;
 use crate::levels::adaptive::Finest;
