@@ -110,7 +110,8 @@ fn finished(solution: &GridSolution, sums: &Sums, kernel: &dyn Kernel, work: Wor
         (_, Some(coarser)) => (coefficient - of_displacement).hypot(coefficient - coarser),
         (_, None) => ALONE * (coefficient - of_displacement).abs(),
     };
-    let error = of_grid.hypot(iteration);
+    // Full contact is not iterated.
+    let error = if solution.status == Status::FullContact { of_grid } else { of_grid.hypot(iteration) };
     Friction {
         coefficient,
         error,
