@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 #: Elements per side: a number, ``(nx, ny)``, or text such as ``"512x256"``.
 Grid = Union[int, tuple[int, int], str]
@@ -20,6 +21,10 @@ Boundary = Literal["periodic", "free"]
 Method = Literal["adaptive", "uniform", "gauss-seidel"]
 #: Conductivity of both bodies, or of each.
 Conductivity = Union[float, tuple[float, float], str]
+#: A Prony series: its file, pairs (g, tau), or the tuple of an array of g and one of tau (s).
+Prony = Union[str, "os.PathLike[str]", Sequence[Sequence[float]], NDArray[np.float64], tuple[NDArray[np.float64], NDArray[np.float64]]]
+#: A fractional Zener solid: ``alpha``, ``glassy_ratio`` and ``tau`` (s), or text such as ``"0.2,10,1e-3"``.
+Fractional = Union[Mapping[str, float], str]
 #: A file or a folder.
 Path = Union[str, "os.PathLike[str]"]
 #: Keys of files that a surface is made from.
@@ -55,12 +60,36 @@ def _plain(name: str, value: Any) -> Any:
         return f"{value[0]},{value[1]}"
     if isinstance(value, os.PathLike):
         return os.fspath(value)
+    if name == "prony":
+        return _terms(value)
+    if name == "fractional" and isinstance(value, Mapping):
+        return _fractional(value)
     return value
 
 
+def _terms(value: Any) -> list[list[float]]:
+    """The terms [g, tau] of a Prony series."""
+    is_pair = isinstance(value, tuple) and len(value) == 2 and not any(isinstance(part, tuple) for part in value)
+    try:
+        terms = np.asarray(value, float)
+        terms = np.atleast_2d(terms.T) if is_pair else terms
+    except (TypeError, ValueError):
+        terms = np.empty(0)
+    if terms.ndim != 2 or terms.shape[1] != 2:
+        raise ValueError("prony: must be a file, a list of pairs (g, tau), or a tuple of two arrays of one length")
+    return [[float(g), float(tau)] for g, tau in zip(terms[:, 0], terms[:, 1])]
+
+
+def _fractional(value: Mapping[str, float]) -> str:
+    names = ("alpha", "glassy_ratio", "tau")
+    if set(value) != set(names):
+        raise ValueError(f"fractional: must have {', '.join(names)}, not {', '.join(map(str, value))}")
+    return ",".join(repr(float(value[name])) for name in names)
+
+
 def with_absolute_files(keys: dict[str, Any]) -> dict[str, Any]:
-    """The keys with absolute paths of the files of a surface, since the working directory may be another one later."""
-    files = (*SURFACE_FILES, "add")
+    """The keys with absolute paths of the files they name, since the working directory may be another one later."""
+    files = (*SURFACE_FILES, "add", "prony")
     named = {name for name in files if isinstance(keys.get(name), str)}
     return {name: os.path.abspath(value) if name in named else value for name, value in keys.items()}
 

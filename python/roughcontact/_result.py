@@ -255,9 +255,44 @@ class Result:
         return self.summary.get("mean_plastic_gap")
 
     @property
+    def friction(self) -> float | None:
+        """Friction coefficient of a surface that slides, from what the solid dissipates. None without ``speed``."""
+        return self.summary.get("friction")
+
+    @property
+    def friction_error(self) -> float | None:
+        """Estimated error of ``friction``, of the mesh and the iteration."""
+        return self.summary.get("friction_error")
+
+    @property
+    def friction_bound(self) -> float | None:
+        """Proven bound of the error of ``friction`` that the iteration leaves on this grid."""
+        return self.summary.get("friction_bound")
+
+    @property
+    def lateral_friction(self) -> float | None:
+        """Force across the velocity, positive to its left, relative to the load. None without ``speed``."""
+        return self.summary.get("lateral_friction")
+
+    @property
+    def dissipated_power(self) -> float | None:
+        """Power that the solid dissipates, per nominal area (W/m²). None without ``speed``."""
+        return self.summary.get("dissipated_power")
+
+    @property
+    def max_loss_tangent(self) -> float | None:
+        """Maximum loss tangent of the waves of the grid at this speed. None without ``speed``."""
+        return self.summary.get("max_loss_tangent")
+
+    @property
     def conductance(self) -> float | None:
         """Conductance per nominal area (S/m² or W/(m² K)). None without ``conductivity`` and in full contact."""
         return self.summary.get("conductance")
+
+    @property
+    def conductance_error(self) -> float | None:
+        """Estimated error of ``conductance``, in its unit."""
+        return self.summary.get("conductance_error")
 
     @cached_property
     def displacement(self) -> Floats:

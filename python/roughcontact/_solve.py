@@ -16,12 +16,14 @@ from roughcontact._keys import (
     SURFACE_FILES,
     Boundary,
     Conductivity,
+    Fractional,
     Grid,
     LengthUnit,
     Mask,
     Method,
     Missing,
     Path,
+    Prony,
     Quantity,
     Shape,
     plain,
@@ -83,6 +85,12 @@ def solve(
     penetration: Quantity | None = None,
     force: Quantity | None = None,
     hardness: Quantity | None = None,
+    speed: Quantity | None = None,
+    direction: Quantity | None = None,
+    prony: Prony | None = None,
+    glassy_ratio: float | None = None,
+    relaxation_time: Quantity | None = None,
+    fractional: Fractional | None = None,
     conductivity: Conductivity | None = None,
     kernel: Kernel | None = None,
     boundary: Boundary | None = None,
@@ -144,6 +152,16 @@ def solve(
         one. These and all other lengths, pressures and forces may be text with a unit, such as ``"10kPa"``.
     hardness : float, optional
         Upper limit of the pressure (Pa), the usual first model of plastic contact. Default: no limit, an elastic contact.
+    speed, direction : float or str, optional
+        Speed (m/s) of the surface that slides steadily over a solid that relaxes, and its direction: 0 degrees, the default,
+        is along +x, 90 along +y. The moduli are the relaxed ones. Adds :attr:`Result.friction`.
+    prony : path, sequence of (g, tau), or a tuple of two arrays, optional
+        The solid as a Prony series, with g relative to the relaxed modulus and tau in s. A file may have moduli in Pa, under
+        the title E.
+    glassy_ratio, relaxation_time : float, optional
+        Instead of ``prony``: one relaxation time (s), with the ratio of the glassy to the relaxed modulus.
+    fractional : mapping, optional
+        Instead of ``prony``: a fractional Zener solid, ``{"alpha": 0.2, "glassy_ratio": 10, "tau": 1e-3}``.
     conductivity : float, (float, float) or str, optional
         Electrical (S/m) or thermal (W/(m K)) conductivity of both bodies, or of each, for :attr:`Result.conductance`.
     kernel : {"love", "spectral"} or callable, default "love"

@@ -23,8 +23,11 @@ def test_conductivities_of_two_bodies_give_their_harmonic_mean(solid):
     assert by[400.0].conductance == pytest.approx(400 * of_unit, rel=1e-14)
     for given in ((400, 50), "400,50"):
         assert by[given].conductance == pytest.approx(2 / (1 / 400 + 1 / 50) * of_unit, rel=1e-14)
+        relative = by[given].contact_conductance_error / of_unit
+        assert by[given].conductance_error == pytest.approx(relative * by[given].conductance, rel=1e-12)
     table = rc.sweep(waves=8, grid=128, e_star=1e9, pressures=[2e6], **solid, conductivity=400.0)
     assert table[0]["conductance"] == by[400.0].conductance
+    assert table[0]["conductance_error"] == by[400.0].conductance_error
 
 
 def test_the_symbol_of_a_half_space_conducts_as_the_spectral_kernel():

@@ -2,11 +2,12 @@
 
 import pathlib
 import re
+import shutil
 
 import pytest
 
 ROOT = pathlib.Path(__file__).parents[2]
-DOCUMENTS = ("README.md", "python/README.md", "docs/python.md", "docs/sweeps.md")
+DOCUMENTS = ("README.md", "python/README.md", "docs/python.md", "docs/sliding.md", "docs/sweeps.md")
 
 
 def blocks(name):
@@ -18,6 +19,7 @@ def blocks(name):
 
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_python_in_a_document_runs(name, tmp_path, monkeypatch):
+    shutil.copy(ROOT / "data/master-curve.csv", tmp_path)
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     for kind, code in blocks(name):

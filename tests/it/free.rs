@@ -208,7 +208,7 @@ fn the_error_bar_of_the_area_holds_the_limit_of_fine_grids() {
 
 /// The limit is extrapolated: errors at borders fall with the side of elements.
 #[test]
-fn the_error_bar_of_the_gap_holds_where_contact_reaches_a_border() {
+fn the_error_bar_of_the_penetration_holds_where_contact_reaches_a_border() {
     let beside = |n: usize| body(n, DVec2::new(0.1, 0.2), |r| -0.5 * r * r);
     let inside = |n: usize| body(n, DVec2::splat(0.5), |r| -0.5 * r * r);
     let bodies: [&dyn Fn(usize) -> Field; 3] = [&beside, &inside, &|n| rough(n, 4)];
@@ -217,7 +217,7 @@ fn the_error_bar_of_the_gap_holds_where_contact_reaches_a_border() {
             [128, 256, 512].map(|n| solved(&heights(n), &FreeLove, Control::MeanPressure(load), 1e-8));
         let limit = 2.0 * finest.info().penetration - fine.info().penetration;
         for solution in [coarse, fine] {
-            let (error, bar) = (solution.info().penetration - limit, solution.observables().mean_gap_error);
+            let (error, bar) = (solution.info().penetration - limit, solution.penetration_error());
             assert!(error.abs() <= bar && bar <= 6.0 * error.abs(), "{load}: {error:e}, bar {bar:e}");
             assert_eq!(solution.observables().rms_pressure_error, None, "the rms pressure has no limit");
         }

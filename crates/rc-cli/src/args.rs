@@ -34,11 +34,11 @@ Exit codes: 0 solved, 2 bad input, 3 not converged, 4 could not write, 130 inter
 #[derive(Subcommand, Clone, Debug)]
 pub(crate) enum Command {
     /// Solve one contact problem; without arguments, the paper's surface into rc-result/
-    Solve(SolveArgs),
+    Solve(Box<SolveArgs>),
     /// Solve a list of loads on a list of surfaces; --resume continues after an interruption
     Sweep(Box<SweepArgs>),
     /// Generate, convert or treat a surface
-    Surface(SurfaceArgs),
+    Surface(Box<SurfaceArgs>),
     /// The usual treatments of a measured map, for rc solve, with pictures of what they did
     Prepare(Box<PrepareArgs>),
     /// One contact under varied treatments of a measured map: how much the results depend on them

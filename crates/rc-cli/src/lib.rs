@@ -47,7 +47,7 @@ mod terminal;
 mod text;
 pub mod warnings;
 
-pub use files::{checkpoint, result};
+pub use files::{checkpoint, kind, result};
 
 use args::{Cli, Command};
 use error::CliError;
@@ -92,9 +92,9 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> Result<(), CliErr
 /// [`CliError`], which has the exit code.
 pub fn run(cli: Cli) -> Result<(), CliError> {
     match cli.command {
-        Command::Solve(args) => solve::run(args),
+        Command::Solve(args) => solve::run(*args),
         Command::Sweep(args) => sweep::run(*args),
-        Command::Surface(args) => surface::run(args),
+        Command::Surface(args) => surface::run(*args),
         Command::Prepare(args) => prepare::command::run(*args),
         Command::Study(args) => study::command::run(*args),
         Command::Inspect(args) => inspect::run(&args),

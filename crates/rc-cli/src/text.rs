@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rc_core::quantity::{Scale, count, digits, engineering};
-use rc_sweep::{ControlKind, LeakageSummary, Summary};
+use rc_sweep::{ControlKind, FrictionSummary, LeakageSummary, Summary};
 
 /// A few aligned lines about a solved problem.
 ///
@@ -48,6 +48,9 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
         ("elastic energy", engineering(s.elastic_energy, "J")),
         ("certificate", certificate_line(s)),
     ];
+    if let Some(friction) = friction(s) {
+        lines.insert(4, ("friction", friction));
+    }
     if let Some(plastic) = plastic(s) {
         lines.insert(4, ("plastic area", plastic));
     }
@@ -79,14 +82,21 @@ pub(crate) fn plastic(s: &Summary) -> Option<String> {
     ))
 }
 
+/// Text of the friction; `None` without a speed.
+pub(crate) fn friction(s: &Summary) -> Option<String> {
+    let FrictionSummary { friction, friction_error, lateral_friction, dissipated_power, .. } = s.friction?;
+    let (friction, lateral) = (with_error(friction, friction_error), digits(lateral_friction, 2));
+    Some(format!("{friction}, lateral {lateral}, dissipates {}", engineering(dissipated_power, "W/m²")))
+}
+
 /// Text of the electrical and thermal conductance.
 fn conductance(s: &Summary) -> String {
     let Some(value) = s.contact_conductance else { return "infinite".into() };
     let error = s.contact_conductance_error.map_or_else(String::new, |error| format!(" ± {}", digits(error, 1)));
-    let of_bodies = s
-        .conductance
-        .flatten()
-        .map_or_else(String::new, |value| format!(", here {} (unit of the conductivity per m)", digits(value, 4)));
+    let of_bodies = s.conductance.flatten().map_or_else(String::new, |value| {
+        let error = s.conductance_error.flatten().map_or_else(String::new, |error| format!(" ± {}", digits(error, 1)));
+        format!(", here ({}{error}) W/(m² K), or S/m² for electrical conductivities", digits(value, 4))
+    });
     format!("({}{error}) 1/m times the conductivity{of_bodies}", digits(value, 4))
 }
 

@@ -64,10 +64,17 @@ pub fn count(n: usize, thing: &str) -> String {
     format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
 }
 
-/// Text of `value` for pictures, with four significant digits and a true minus sign.
+/// Text of `value` for pictures, with four significant digits and a true minus sign: `1.5`, `2e−17`.
 #[must_use]
 pub fn label(value: f64) -> String {
-    digits(value, 4).replace('-', "\u{2212}")
+    let text = digits(value, 4);
+    let text = match text.split_once('e') {
+        Some((mantissa, exponent)) if mantissa.contains('.') => {
+            format!("{}e{exponent}", mantissa.trim_end_matches('0').trim_end_matches('.'))
+        }
+        _ => text,
+    };
+    text.replace('-', "\u{2212}")
 }
 
 /// Rounds `limit` down to 1, 2 or 5 times a power of ten.
@@ -116,6 +123,14 @@ mod tests {
         ];
         for (value, unit, expected) in cases {
             assert_eq!(engineering(value, unit), expected);
+        }
+    }
+
+    #[test]
+    fn labels_have_no_needless_zeros() {
+        let cases = [(1e-17, "1e\u{2212}17"), (2.5e7, "2.5e7"), (-0.5, "\u{2212}0.5"), (1.234e-9, "1.234e\u{2212}9")];
+        for (value, expected) in cases {
+            assert_eq!(label(value), expected);
         }
     }
 

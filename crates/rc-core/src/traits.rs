@@ -125,7 +125,7 @@ impl Default for EdgeBias {
 ///
 /// - **Viscoelastic solids** under a surface that slides steadily have a complex symbol: the displacement lags behind
 ///   the pressure. [`Kernel::sliding_symbol`] gives it, and [`Kernel::symbol`] then is that of the relaxed solid. The
-///   real part must be positive, which is so for every material that dissipates. Other histories of load need steps in
+///   real part must be positive, as it is for each wave of a material that dissipates. Other histories of load need steps in
 ///   time: the response within a step is elastic, and the displacement that remains from earlier steps is subtracted
 ///   from the heights.
 /// - **Shifted responses** have a complex symbol with a factor exp(2πi k·d). Instead, move the heights.

@@ -1,6 +1,6 @@
 //! Roughness parameters of a profile, as in ISO 21920-2 and ISO 4287.
 
-/// Height parameters of a profile, in the unit of its heights. They are relative to the mean.
+/// Height parameters of a profile, in the unit of its heights, above a mean line.
 ///
 /// *Accuracy*: test `parameters_of_a_wave_are_those_of_a_wave`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -13,7 +13,7 @@ pub struct ProfileParameters {
     pub sk: f64,
     /// Kurtosis ⟨h⁴⟩/q⁴, Rku or Pku: 3 for a Gaussian.
     pub ku: f64,
-    /// Height of the highest peak of a section above the mean, averaged over the sections: Rp or Pp.
+    /// Height of the highest peak of a section above the mean line, averaged over the sections: Rp or Pp.
     pub p: f64,
     /// Depth of the deepest valley of a section, likewise: Rv or Pv.
     pub v: f64,
@@ -24,15 +24,24 @@ pub struct ProfileParameters {
 }
 
 impl ProfileParameters {
-    /// The parameters of `heights`, which are divided into this number of equal sections. `NaN` is passed over.
+    /// The parameters of `heights` about their mean, in one section. `NaN` is passed over.
     ///
     /// Without heights, all are `NaN`.
     #[must_use]
-    pub fn of(heights: &[f64], sections: usize) -> Self {
+    pub fn of(heights: &[f64]) -> Self {
+        let measured = || heights.iter().copied().filter(|height| !height.is_nan());
+        Self::about(measured().sum::<f64>() / measured().count() as f64, heights, 1)
+    }
+
+    /// The parameters of `heights` above the mean line at the height `line`, in this number of equal sections.
+    ///
+    /// The mean line of a roughness profile is that of its filter, 0, and not the mean of the evaluated part (ISO
+    /// 21920-2: ordinates of the profile). `NaN` is passed over. Without heights, all are `NaN`.
+    #[must_use]
+    pub fn about(line: f64, heights: &[f64], sections: usize) -> Self {
         let measured = || heights.iter().copied().filter(|height| !height.is_nan());
         let n = measured().count() as f64;
-        let mean = measured().sum::<f64>() / n;
-        let moment = |power: i32| measured().map(|height| (height - mean).powi(power)).sum::<f64>() / n;
+        let moment = |power: i32| measured().map(|height| (height - line).powi(power)).sum::<f64>() / n;
         let q = moment(2).sqrt();
         let ends = |part: &[f64]| {
             let part = part.iter().copied().filter(|height| !height.is_nan());
@@ -47,12 +56,12 @@ impl ProfileParameters {
         };
         let [low, high] = ends(heights);
         Self {
-            a: measured().map(|height| (height - mean).abs()).sum::<f64>() / n,
+            a: measured().map(|height| (height - line).abs()).sum::<f64>() / n,
             q,
             sk: moment(3) / q.powi(3),
             ku: moment(4) / q.powi(4),
-            p: over_sections(&|[_, high]| high - mean),
-            v: over_sections(&|[low, _]| mean - low),
+            p: over_sections(&|[_, high]| high - line),
+            v: over_sections(&|[low, _]| line - low),
             z: over_sections(&|[low, high]| high - low),
             t: if n > 0.0 { high - low } else { f64::NAN },
         }
@@ -70,7 +79,7 @@ mod tests {
         let mut heights: Vec<f64> = (0..10_000).map(wave).collect();
         let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-4, "{found} for {expected}");
         for sections in [1, 5] {
-            let ProfileParameters { a, q, sk, ku, p, v, z, t } = ProfileParameters::of(&heights, sections);
+            let ProfileParameters { a, q, sk, ku, p, v, z, t } = ProfileParameters::about(7.0, &heights, sections);
             for (found, expected) in
                 [(a, 4.0 / PI), (q, 2.0_f64.sqrt()), (sk, 0.0), (ku, 1.5), (p, 2.0), (v, 2.0), (z, 4.0), (t, 4.0)]
             {
@@ -80,9 +89,18 @@ mod tests {
         // A scratch of one point is in one of five sections. A missing point is passed over.
         heights[4321] = -3.0;
         heights[10] = f64::NAN;
-        let ProfileParameters { z, t, .. } = ProfileParameters::of(&heights, 5);
+        let ProfileParameters { z, t, .. } = ProfileParameters::about(7.0, &heights, 5);
         close(t, 12.0);
         close(z, 4.0 + 8.0 / 5.0);
-        assert!(ProfileParameters::of(&[], 1).q.is_nan());
+        assert!(ProfileParameters::of(&[]).q.is_nan());
+    }
+
+    #[test]
+    fn the_mean_line_is_the_given_one_or_the_mean() {
+        let heights = [1.0, 1.0, 1.0, 5.0];
+        let [given, mean] = [ProfileParameters::about(0.0, &heights, 2), ProfileParameters::of(&heights)];
+        assert_eq!((given.a, given.q, given.sk), (2.0, 7_f64.sqrt(), 32.0 / 7_f64.powf(1.5)));
+        assert_eq!((given.p, given.v, given.z, given.t), (3.0, -1.0, 2.0, 4.0));
+        assert_eq!((mean.a, mean.q, mean.p, mean.v), (1.5, 3_f64.sqrt(), 3.0, 1.0));
     }
 }

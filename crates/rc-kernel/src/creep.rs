@@ -30,6 +30,15 @@ impl Relaxation {
         self.prony_terms().map(of_terms)
     }
 
+    /// The creep compliance J(t) after a time, relative to that of the relaxed material. `None` of a fractional solid.
+    ///
+    /// It is 1 - Σ J exp(-t/ρ) over the retardation times ρ, from E∞/E0 at t = 0 to 1.
+    #[must_use]
+    pub fn creep(&self, time: f64) -> Option<f64> {
+        let left = |[compliance, rho]: &[f64; 2]| compliance * (-time / rho).exp();
+        Some(1.0 - self.retardation()?.modes.iter().map(left).sum::<f64>())
+    }
+
     /// 1/E', the inverse of the storage modulus, as J0 + Σ J/(1 + ω²ρ²). `None` if the material is not a Prony series.
     ///
     /// The storage modulus is 1 + Σ g (ωτ)²/(1 + (ωτ)²), a Prony series in ω².
@@ -128,5 +137,16 @@ mod tests {
         assert_eq!(Relaxation::fractional(0.5, 10.0, 1.0).expect("a material").retardation(), None);
         let elastic = Relaxation::prony(&[]).expect("an elastic material").retardation().expect("no times");
         assert_eq!(elastic, Retardation { instantaneous: 1.0, modes: Vec::new() });
+    }
+
+    #[test]
+    fn one_time_creeps_with_its_retardation_time() {
+        let material = Relaxation::single(10.0, 0.3).expect("a material");
+        for time in [0.0, 0.1, 3.0, 30.0, 1e3] {
+            let expected = 1.0 - 0.9 * (-time / 3.0_f64).exp();
+            let found = material.creep(time).expect("a Prony series");
+            assert!((found - expected).abs() < 1e-14, "{time}: {found} for {expected}");
+        }
+        assert_eq!(Relaxation::fractional(0.5, 10.0, 1.0).expect("a material").creep(1.0), None);
     }
 }

@@ -134,8 +134,14 @@ fn builder<'a, 'b, B: DrawingBackend>(area: &'a Area<B>, plot: &LinePlot<'_>, fo
         .caption(plot.title, (FONT, 1.1 * font).into_font().color(&BLACK))
         .margin((0.8 * font) as i32)
         .x_label_area_size((2.6 * font) as i32)
-        .y_label_area_size((4.0 * font) as i32);
+        .y_label_area_size(((if has_exponents(plot.y) { 5.4 } else { 4.0 }) * font) as i32);
     chart
+}
+
+/// Whether tick marks have exponents, which need more room.
+fn has_exponents((low, high): (f64, f64)) -> bool {
+    let largest = low.abs().max(high.abs());
+    !(1e-3..1e6).contains(&largest)
 }
 
 /// The corner of the plot with the fewest points, those of drawn segments included.

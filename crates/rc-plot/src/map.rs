@@ -283,7 +283,7 @@ fn frame<B: DrawingBackend>(area: &Area<B>, from: (i32, i32), to: (i32, i32)) ->
 }
 
 /// Draws text with the middle of its digits at `at`.
-fn text<B: DrawingBackend>(
+pub(crate) fn text<B: DrawingBackend>(
     area: &Area<B>,
     text: &str,
     at: (i32, i32),

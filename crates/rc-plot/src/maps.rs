@@ -1,8 +1,10 @@
 //! Pictures of maps: `contact.png` with contact and pressure, and a single map.
 
 use plotters::prelude::DrawingBackend;
+use plotters::style::text_anchor::HPos;
 use rc_core::{Field, Grid};
 
+use crate::map::text;
 use crate::{Area, Map, Palette, Picture, PictureError, PixelMean, Shade, bitmap_size, draw_map, map_extent};
 
 /// Contact map and pressure beside each other, at the resolution of the picture.
@@ -22,6 +24,8 @@ pub struct ContactPicture {
     pressure_unit: f64,
     /// Side λ of the cell (m).
     side: f64,
+    /// Text above both maps; empty without one.
+    caption: String,
 }
 
 impl ContactPicture {
@@ -41,6 +45,12 @@ impl ContactPicture {
     #[must_use]
     pub fn up_to(self, greatest: f64) -> Self {
         Self { greatest, ..self }
+    }
+
+    /// The same picture with a text above both maps.
+    #[must_use]
+    pub fn captioned(self, caption: String) -> Self {
+        Self { caption, ..self }
     }
 
     /// The same picture for means over blocks.
@@ -97,6 +107,7 @@ impl ContactRows {
             greatest: if self.greatest.is_finite() { self.greatest.max(0.0) } else { 0.0 },
             pressure_unit,
             side,
+            caption: String::new(),
         }
     }
 }
@@ -112,17 +123,27 @@ impl ContactPicture {
         let bitmap = bitmap_size(self.contact.grid(), (SIDE, SIDE));
         [false, true].map(|colour_bar| map_extent(bitmap, TEXT, colour_bar))
     }
+
+    /// Height of the line of the caption.
+    fn head(&self) -> u32 {
+        if self.caption.is_empty() { 0 } else { (1.6 * TEXT) as u32 }
+    }
 }
 
 impl Picture for ContactPicture {
     fn size(&self) -> (u32, u32) {
         let [(contact, height), (pressure, _)] = self.panels();
-        (contact + pressure + 3 * MARGIN, height + MARGIN)
+        (contact + pressure + 3 * MARGIN, height + MARGIN + self.head())
     }
 
     fn draw<B: DrawingBackend>(&self, area: &Area<B>) -> Result<(), PictureError> {
         let [(contact, height), (pressure, _)] = self.panels();
-        let panel = |left: u32, width: u32| area.clone().shrink((left as i32, (MARGIN / 2) as i32), (width, height));
+        let top = (MARGIN / 2 + self.head()) as i32;
+        let panel = |left: u32, width: u32| area.clone().shrink((left as i32, top), (width, height));
+        if !self.caption.is_empty() {
+            let middle = (self.size().0 / 2) as i32;
+            text(area, &self.caption, (middle, (0.8 * TEXT) as i32), HPos::Center, TEXT)?;
+        }
         let (name, values) = if self.of_elements { ("Contact", "elements") } else { ("Touched", "blocks") };
         let title = format!("{name}: {} % of the {values}", rc_core::quantity::digits(100.0 * self.fraction, 3));
         let contact_map = Map { title: &title, field: &self.contact, shade: Shade::PartOfContact, side: self.side };
@@ -178,6 +199,11 @@ mod tests {
         let text = std::fs::read_to_string(svg).expect("the SVG file");
         assert_eq!(text.matches("<image").count(), 3, "two maps and a colour bar");
         assert!(text.contains("MPa") && text.len() < 1_000_000, "{} bytes", text.len());
+        let named = picture.clone().captioned("seed 1, pressure 2 MPa".to_owned());
+        assert!(named.size().1 > picture.size().1);
+        save_svg(&named, &dir.path().join("b.svg")).expect("an SVG file");
+        let text = std::fs::read_to_string(dir.path().join("b.svg")).expect("the SVG file");
+        assert!(text.contains("seed 1, pressure 2 MPa"));
     }
 
     #[test]

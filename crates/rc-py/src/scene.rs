@@ -85,6 +85,9 @@ pub(crate) fn value_of(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<V
         Value::Float(number.value())
     } else if let Ok(number) = value.cast::<PyInt>() {
         Value::Integer(number.extract().map_err(|_| bad_input(format_args!("{key}: {number} is too large")))?)
+    } else if let ("prony", Ok(terms)) = (key, value.extract::<Vec<[f64; 2]>>()) {
+        let term = |term: [f64; 2]| Value::Array(term.map(Value::Float).to_vec());
+        Value::Array(terms.into_iter().map(term).collect())
     } else {
         let kind = value.get_type().name()?;
         let instead = match key {
@@ -95,6 +98,7 @@ pub(crate) fn value_of(key: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<V
             _ => "",
         };
         let expected = match key {
+            "prony" => "a file or pairs (g, tau)",
             "grid" | "output_grid" => "a whole number, a pair (nx, ny), or text such as '512x256'",
             _ => "a number or text",
         };

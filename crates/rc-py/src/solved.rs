@@ -7,6 +7,7 @@ use std::time::Duration;
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
 use pyo3::prelude::*;
 use rc_cli::error::CliError;
+use rc_cli::kind::Kind;
 use rc_cli::scene::as_read::AsRead;
 use rc_cli::scene::keys::SurfaceKeys;
 use rc_cli::scene::resolve::ContactSetup;
@@ -246,7 +247,7 @@ impl Solved {
         let callers = heights.as_ref().map(|heights| self.map_heights(heights)).transpose()?;
         let map = own.map(|(heights, as_read)| MapHeights::InCell { heights, as_read }).or(callers);
         let written = to_end(py, self.found.threads, || {
-            rc_sweep::files::check_folder(&folder)?;
+            Kind::Result.check_out(&folder)?;
             self.found.files(map).write(&folder, self.found.summary())
         })?;
         written.map_err(raised)

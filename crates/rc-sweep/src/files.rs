@@ -77,6 +77,8 @@ pub struct Staged {
     folder: PathBuf,
     hidden: Hidden,
     names: Vec<String>,
+    /// Names of earlier files that the set replaces, whether it has such files or not.
+    earlier: Vec<String>,
 }
 
 impl Staged {
@@ -90,7 +92,13 @@ impl Staged {
         std::fs::create_dir_all(&folder).map_err(fail)?;
         hidden::remove_dead(&folder);
         let hidden = Hidden::new(&folder).map_err(fail)?;
-        Ok(Self { folder, hidden, names: Vec::new() })
+        Ok(Self { folder, hidden, names: Vec::new(), earlier: Vec::new() })
+    }
+
+    /// The set, which removes earlier files and folders with these names from its folder when it is complete.
+    #[must_use]
+    pub fn instead_of<'a>(self, earlier: impl Iterator<Item = &'a str>) -> Self {
+        Self { earlier: earlier.map(str::to_owned).collect(), ..self }
     }
 
     /// Adds the file or folder `name`. `write` writes it to the path in its argument.
@@ -132,6 +140,9 @@ impl Staged {
         if let Some(mark) = self.names.last() {
             self.make_room(mark)?;
         }
+        for name in self.earlier.iter().filter(|name| !self.names.contains(name)) {
+            self.set_aside(name)?;
+        }
         for name in &self.names {
             let (from, path) = (self.hidden.path().join(name), self.folder.join(name));
             if from.is_dir() {
@@ -149,12 +160,21 @@ impl Staged {
     fn make_room(&self, name: &str) -> Result<(), FileError> {
         let path = self.folder.join(name);
         let Ok(earlier) = path.symlink_metadata() else { return Ok(()) };
-        let moved = match (earlier.is_dir(), self.hidden.path().join(name).is_dir()) {
+        let refused: Result<(), _> = match (earlier.is_dir(), self.hidden.path().join(name).is_dir()) {
             (true, false) => Err(io::Error::from(io::ErrorKind::IsADirectory)),
             (false, true) => Err(io::Error::from(io::ErrorKind::NotADirectory)),
-            _ => std::fs::rename(&path, self.hidden.path().join(format!("{EARLIER}{name}"))),
+            _ => return self.set_aside(name),
         };
-        moved.map_err(|cause| FileError::write(&path, cause))
+        refused.map_err(|cause| FileError::write(&path, cause))
+    }
+
+    /// Moves an existing file or folder to the hidden folder.
+    fn set_aside(&self, name: &str) -> Result<(), FileError> {
+        let path = self.folder.join(name);
+        match std::fs::rename(&path, self.hidden.path().join(format!("{EARLIER}{name}"))) {
+            Err(cause) if cause.kind() != io::ErrorKind::NotFound => Err(FileError::write(&path, cause)),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -251,6 +271,25 @@ mod tests {
             assert_eq!(names(&folder), ["a.txt", "summary.json"]);
             assert_eq!(std::fs::read_to_string(folder.join("a.txt")).expect("the file"), text);
         }
+    }
+
+    #[test]
+    fn earlier_files_vanish_only_with_a_committed_set() {
+        let dir = tempfile::tempdir().expect("a temporary folder");
+        for name in ["stale.npy", "own.txt"] {
+            std::fs::write(dir.path().join(name), "").expect("a file");
+        }
+        std::fs::create_dir(dir.path().join("group")).expect("a folder");
+        let staged = || {
+            let earlier = ["stale.npy", "group", "a.txt", "absent"].into_iter();
+            let mut staged = Staged::new(dir.path()).expect("a writable folder").instead_of(earlier);
+            staged.add_text("a.txt", "").expect("a staged file");
+            staged
+        };
+        drop(staged());
+        assert_eq!(names(dir.path()), ["group", "own.txt", "stale.npy"]);
+        staged().commit().expect("a committed set");
+        assert_eq!(names(dir.path()), ["a.txt", "own.txt"]);
     }
 
     #[test]

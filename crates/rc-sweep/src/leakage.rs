@@ -49,12 +49,18 @@ pub struct LeakageSummary {
 /// Columns of a flow in a table.
 const COLUMNS: [&str; 5] = ["permeance_x", "permeance_y", "permeance_error_x", "permeance_error_y", "percolates"];
 
+/// Columns of a flow in m³/s.
+const FLOW_COLUMNS: [&str; 4] = ["flow_x", "flow_y", "flow_error_x", "flow_error_y"];
+
 impl LeakageSummary {
     /// The flow as cells of a row.
     pub(crate) fn cells(&self) -> impl Iterator<Item = (&'static str, Value)> {
         let ([x, y], [error_x, error_y]) = (self.permeance, self.permeance_error);
         let values = [json!(x), json!(y), json!(error_x), json!(error_y), json!(self.percolates)];
-        let flows = self.flow.map(|[x, y]| [("flow_x", json!(x)), ("flow_y", json!(y))]);
+        let flows = self.flow.map(|[x, y]| {
+            let [error_x, error_y] = self.flow_error.unwrap_or_default();
+            FLOW_COLUMNS.into_iter().zip([json!(x), json!(y), json!(error_x), json!(error_y)])
+        });
         COLUMNS.into_iter().zip(values).chain(flows.into_iter().flatten())
     }
 
@@ -64,7 +70,7 @@ impl LeakageSummary {
     ///
     /// With `has_film` they have flows in m³/s.
     pub fn complete(cells: &mut Cells, has_film: bool) {
-        let flows = has_film.then_some(["flow_x", "flow_y"]).into_iter().flatten();
+        let flows = has_film.then_some(FLOW_COLUMNS).into_iter().flatten();
         for column in COLUMNS.into_iter().chain(flows) {
             cells.entry(column).or_insert(Value::Null);
         }

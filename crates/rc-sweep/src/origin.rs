@@ -12,3 +12,14 @@ pub struct MapOrigin {
     /// The treatments since, in their order.
     pub treatments: Vec<String>,
 }
+
+impl MapOrigin {
+    /// The treatment that made the map periodic, if one did.
+    #[must_use]
+    pub fn periodic_step(&self) -> Option<&str> {
+        let makes_periodic = |step: &&String| {
+            ["periodic mirror", "periodic window", "repeat"].iter().any(|start| step.starts_with(start))
+        };
+        self.treatments.iter().find(makes_periodic).map(String::as_str)
+    }
+}

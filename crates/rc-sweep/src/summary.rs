@@ -8,6 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use crate::content::Cells;
+use crate::friction::FrictionSummary;
 use crate::leakage::LeakageSummary;
 use crate::memory;
 use crate::origin::MapOrigin;
@@ -103,11 +104,17 @@ pub struct Summary {
     pub contact_conductance: Option<f64>,
     /// Estimated error of `contact_conductance` (1/m).
     pub contact_conductance_error: Option<f64>,
-    /// Conductance of the nominal area for the given conductivities, in their unit per metre.
+    /// Conductance per nominal area for the given conductivities (W/(m² K) for thermal ones, S/m² for electrical ones).
     ///
     /// It exists only with conductivities, and is null in full contact.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
     pub conductance: Option<Option<f64>>,
+    /// Estimated error of `conductance`, in its unit.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
+    pub conductance_error: Option<Option<f64>>,
+    /// Friction of a surface that slides. Its keys exist only with a speed, and are 0 at the speed 0.
+    #[serde(flatten)]
+    pub friction: Option<FrictionSummary>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
     /// rms height about the mean (m).
@@ -200,6 +207,8 @@ pub struct SolveContext {
     pub threads: usize,
     /// Harmonic mean of the conductivities of the bodies, if they are given.
     pub conductivity: Option<f64>,
+    /// Whether a speed is given, which may be 0.
+    pub slides: bool,
 }
 
 /// The tolerance relative to the range of heights, and that of the energy.
@@ -232,9 +241,9 @@ fn conductance(solution: &Solution<'_>, units: Units) -> [Option<f64>; 2] {
 impl Summary {
     /// The summary of `solution` in SI units. Its memory is the peak of the process so far.
     #[must_use]
+    #[expect(clippy::too_many_lines, reason = "one line for each key")]
     pub fn of(solution: &Solution<'_>, units: Units, context: &SolveContext) -> Self {
-        let (info, [tolerance, energy_tolerance]) = (solution.info(), tolerances(solution.bound()));
-        let (observables, [of_spots, error_of_spots]) = (solution.observables(), conductance(solution, units));
+        let (info, observables, of_spots) = (solution.info(), solution.observables(), conductance(solution, units));
         Self {
             status: solution.status().name().to_owned(),
             control: context.control.key().to_owned(),
@@ -266,9 +275,11 @@ impl Summary {
             mean_gap: units.metres(observables.mean_gap),
             mean_gap_error: Some(units.metres(observables.mean_gap_error)),
             contact_stiffness: finite(units.pascals_per_metre(solution.stiffness())),
-            contact_conductance: of_spots,
-            contact_conductance_error: error_of_spots,
-            conductance: context.conductivity.map(|of_bodies| of_spots.map(|per_unit| per_unit * of_bodies)),
+            contact_conductance: of_spots[0],
+            contact_conductance_error: of_spots[1],
+            conductance: context.conductivity.map(|of_bodies| of_spots[0].map(|per_unit| per_unit * of_bodies)),
+            conductance_error: context.conductivity.map(|of_bodies| of_spots[1].map(|error| error * of_bodies)),
+            friction: context.slides.then(|| FrictionSummary::of(solution, units)),
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,
@@ -277,8 +288,8 @@ impl Summary {
             penetration_error: info.certificate.penetration,
             energy_error: Some(info.certificate.energy),
             load_error: info.certificate.load,
-            tolerance,
-            energy_tolerance,
+            tolerance: tolerances(solution.bound())[0],
+            energy_tolerance: tolerances(solution.bound())[1],
             cells_evaluated: Some(solution.n_evaluated()),
             cells_proven: Some(solution.n_proven()),
             level_iterations: Some(info.levels.iter().map(|level| level.iterations).collect()),

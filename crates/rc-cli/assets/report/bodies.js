@@ -74,3 +74,9 @@ function bodySections(surface, fields, view, sides) {
     + "of the maps." + (surface.of_blocks ? " Heights are means over blocks (output_grid), and touched blocks are called contact." : "");
   return make("section", {}, make("h2", {}, "Section through both bodies"), make("div", { class: "columns wide" }, ...charts), make("p", { class: "quiet" }, note));
 }
+
+/** Both bodies of the contact of a profile. */
+function bodyOfLine(section, side) {
+  const note = "Heights are from the undeformed elastic surface, and enlarged against x. At most 1000 points are shown, where the gap is smallest.";
+  return make("section", {}, make("h2", {}, "Both bodies"), make("div", { class: "columns wide" }, new Chart(bodyChart(section, side)).element), make("p", { class: "quiet" }, note));
+}

@@ -1,6 +1,6 @@
 // Line charts as SVG, with linear or logarithmic axes that can be switched, and a reading at the pointer.
 
-const CHART = { width: 600, height: 330, left: 92, right: 14, top: 10, bottom: 46 };
+const CHART = { width: 600, height: 330, left: 104, right: 14, top: 10, bottom: 46 };
 
 /** What a logarithmic axis shows, over its largest value: below is rounding. */
 const SMALLEST_PART = 1e-7;
@@ -88,8 +88,12 @@ class Chart {
   }
 
   redraw() {
-    const ends = (point, i) => [point[i] - point[i + 2], point[i], point[i] + point[i + 2]];
-    const of = (i) => this.series.flatMap(({ kind, points }) => points.flatMap((point) => (kind === "bars" ? ends(point, i) : point[i])));
+    const logs = [this.x.log, this.y.log];
+    // Nothing is drawn at a zero of a logarithmic axis, and a bar that reaches zero ends at its border.
+    const isShown = (point) => logs.every((log, i) => !log || point[i] > 0);
+    const low = (point, i) => Math.max(point[i] - point[i + 2], logs[i] ? 0.5 * point[i] : -Infinity);
+    const ends = (point, i) => [low(point, i), point[i], point[i] + point[i + 2]];
+    const of = (i) => this.series.flatMap(({ kind, points }) => points.filter(isShown).flatMap((point) => (kind === "bars" ? ends(point, i) : point[i])));
     const { width, height, left, right, top, bottom } = CHART;
     this.across = new Axis(this.x, of(0), left, width - right);
     this.up = new Axis(this.y, of(1), height - bottom, top);

@@ -21,7 +21,12 @@ function fill(element, attributes, children) {
 
 /** A table of rows; a cell is text, or a list of a class and text. */
 function table(rows, heads) {
-  const cell = (content) => (Array.isArray(content) ? make("td", { class: content[0] }, content[1]) : make("td", {}, content));
+  // Only words as long as the name of a file are broken.
+  const isLong = (content) => String(content).split(/\s/).some((word) => word.length > 24);
+  const cell = (content) => {
+    if (Array.isArray(content)) return make("td", { class: content[0] }, content[1]);
+    return make("td", isLong(content) ? { class: "long" } : {}, content);
+  };
   const head = heads ? [make("tr", {}, ...heads.map((text) => make("th", {}, text)))] : [];
   return make("table", {}, ...head, ...rows.map((row) => make("tr", {}, ...row.map(cell))));
 }

@@ -126,6 +126,7 @@ class FieldMap {
     }
     if (withCursor) this.paintCursor(context);
     this.paintRuler(context);
+    if (this.arrow) this.paintArrow(context);
     this.value.textContent = this.reading(this.field.at(...view.cursor));
   }
 
@@ -159,6 +160,25 @@ class FieldMap {
     context.fillStyle = "#10151d";
     context.fillText(text, margin, high - 15 * unit);
     context.fillRect(margin, high - 9 * unit, width, 3 * unit);
+  }
+
+  /** The direction in which the surface slides, in the other corner. */
+  paintArrow(context) {
+    const unit = window.devicePixelRatio || 1;
+    const [x, y] = [this.arrow[0], -this.arrow[1]];
+    const middle = [this.canvas.width - 26 * unit, this.canvas.height - 26 * unit];
+    const at = (along, across) => [middle[0] + unit * (along * x - across * y), middle[1] + unit * (along * y + across * x)];
+    context.fillStyle = "rgb(255 255 255 / 0.85)";
+    context.fillRect(middle[0] - 24 * unit, middle[1] - 24 * unit, 50 * unit, 50 * unit);
+    context.strokeStyle = "#10151d";
+    context.lineWidth = 3 * unit;
+    context.beginPath();
+    context.moveTo(...at(-18, 0));
+    context.lineTo(...at(18, 0));
+    context.moveTo(...at(8, -8));
+    context.lineTo(...at(18, 0));
+    context.lineTo(...at(8, 8));
+    context.stroke();
   }
 
   /** Point of the cell under the pointer. */

@@ -3,7 +3,7 @@
 const RELIEF_NOTE = "The heights of the rigid surface, enlarged. Contact has the colours of the map of the pressure. Drag, or press the arrow keys, to turn it.";
 
 /** The maps, and the sections through their cursor. */
-function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElements, peak, averaged }, surface) {
+function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElements, peak, averaged }, surface, direction) {
   const fields = { pressure: new EmbeddedField(pressure), gap: new EmbeddedField(gap), contact: new EmbeddedField(contact) };
   if (surface) fields.heights = new EmbeddedField(surface.heights);
   const view = new SharedView(peak, Math.min(1, 8 / Math.max(pressure.nx, pressure.ny)));
@@ -15,6 +15,7 @@ function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElement
     title: ofElements ? "Contact" : "Touched", field: fields.contact, colours: contact.colours, view, sides, ends: () => ["gap", touching], movable: false,
     reading: (value) => (value === 0 ? "gap" : value === 1 ? touching : `${digits(100 * value, 3)} % ${touching}`),
   });
+  contactMap.arrow = direction;
   const maps = [contactMap, map("Pressure", "pressure", pressure.colours, "Pa"), map("Gap", "gap", gap.colours, "m")];
   const place = make("span", {});
   const sections = sectionCharts(fields, view, sides);
@@ -35,16 +36,36 @@ function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElement
     place.textContent = `x = ${wrapped[0]}, y = ${wrapped[1]}${view.pinned ? " (held; click to release)" : ""}`;
   });
   view.change();
+  const slides = direction ? "The arrow is the direction in which the surface slides. " : "";
   const help = "The wheel zooms, and dragging moves. A click holds the cursor, arrow keys move it, + and − zoom. ";
   return [
     make("h2", {}, "Maps"),
     make("div", { class: "columns" }, ...maps.map((one) => one.element)),
     controls,
-    make("p", { class: "quiet" }, help + averaged),
+    make("p", { class: "quiet" }, slides + help + averaged),
     make("h2", {}, "Section through the cursor"),
     make("div", { class: "columns wide" }, sections.pressure.element, sections.gap.element),
     ...(surface && surface.sections.length > 0 ? [bodySections(surface, fields, view, sides)] : []),
     ...(surface ? [reliefView({ heights: fields.heights, sides, pressure: fields.pressure, colours: pressure.colours }, RELIEF_NOTE), ...surfaceParts(surface, fields.heights)] : []),
+  ];
+}
+
+/** Pressure and gap of the contact of a profile, with both bodies. */
+function lineCharts({ sides, pressure, gap, peak, averaged }, surface) {
+  const fields = { pressure: new EmbeddedField(pressure), gap: new EmbeddedField(gap) };
+  if (surface) fields.heights = new EmbeddedField(surface.heights);
+  const view = new SharedView(peak, Math.min(1, 8 / pressure.nx));
+  const sections = sectionCharts(fields, view, sides);
+  const controls = make("div", { class: "controls" },
+    make("button", { onclick: () => view.zoom(0.5) }, "zoom in on the maximum pressure"), make("button", { onclick: () => view.zoom(2) }, "zoom out"),
+    make("button", { onclick: () => view.reset() }, "whole cell"));
+  return [
+    make("h2", {}, "Pressure and gap along the profile"),
+    make("div", { class: "columns wide" }, sections.pressure.element, sections.gap.element),
+    controls,
+    make("p", { class: "quiet" }, averaged),
+    ...(surface && surface.sections.length > 0 ? [bodyOfLine(surface.sections[0], sides[0])] : []),
+    ...(surface ? surfaceParts(surface, fields.heights) : []),
   ];
 }
 
@@ -95,10 +116,10 @@ function stressDistribution({ values: stress, density, fit, notes }) {
 }
 
 /** Contact spots by size. */
-function contactSpots({ rows, diameters, counts, note }) {
+function contactSpots({ rows, diameters, counts, size, note }) {
   const steps = diameters.map((edge, i) => [edge, i < counts.length ? counts[i] : 0]);
   const chart = new Chart({
-    x: { label: "diameter of a circle of the same area", unit: "m", log: true, from: diameters[0], to: diameters[diameters.length - 1] },
+    x: { label: size, unit: "m", log: true, from: diameters[0], to: diameters[diameters.length - 1] },
     y: { label: "spots", from: 0 },
     series: [{ name: "", points: [[diameters[0], 0], ...steps], colour: "var(--blue)", kind: "steps" }],
   });
@@ -121,7 +142,7 @@ function resultPage(data) {
   const half = (...children) => make("div", { class: "columns wide" }, ...children);
   return [
     ...(data.kappa ? [make("p", {}, data.kappa)] : []),
-    ...mapsAndSections(data.maps, data.surface),
+    ...(data.maps.line ? lineCharts : mapsAndSections)(data.maps, data.surface, data.direction),
     ...(data.no_surface ? [make("p", { class: "quiet" }, `The surface is not shown: ${data.no_surface}`)] : []),
     half(...[data.stress && stressDistribution(data.stress), data.spots && contactSpots(data.spots)].filter(Boolean)),
     ...[data.leakage && half(leakagePicture(data.leakage))].filter(Boolean),

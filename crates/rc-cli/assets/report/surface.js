@@ -22,6 +22,19 @@ function heightMap({ sides, heights, span, lowest, note, mirrored }, field = new
   return make("section", {}, make("h2", {}, "Heights of the surface"), map.element, controls, make("p", { class: "quiet" }, note));
 }
 
+/** The heights of a profile, and its measured half if the rest is its mirror image. */
+function profileChart({ sides, note, mirrored, lowest }, field) {
+  const points = Array.from({ length: field.nx }, (_, i) => [((i + 0.5) / field.nx) * sides[0], field.at((i + 0.5) / field.nx, 0.5) + lowest]);
+  const shown = (part) => ({
+    x: { label: "x", unit: "m", from: 0, to: part * sides[0] }, y: { label: "height", unit: "m", from: Math.min(...points.map(([, z]) => z)) },
+    series: [{ name: "", points: points.filter(([x]) => x <= part * sides[0]), colour: "var(--blue)" }],
+  });
+  const chart = new Chart(shown(mirrored ? 0.5 : 1));
+  const button = (text, part) => make("button", { onclick: () => chart.update(shown(part)) }, text);
+  const controls = mirrored ? [make("div", { class: "controls" }, button("measured half", 0.5), button("whole cell", 1))] : [];
+  return make("section", {}, make("h2", {}, "Heights of the profile"), chart.element, ...controls, make("p", { class: "quiet" }, note));
+}
+
 /** The spectrum with its power law. */
 function spectrumChart({ spectrum, law }) {
   const series = [{ name: "radial mean", points: spectrum, colour: "var(--blue)" }];
@@ -42,12 +55,12 @@ function heightDistribution({ distribution }) {
 }
 
 /** The material ratio curve with the line of its core. */
-function materialRatio({ material_ratio: curve, core }) {
+function materialRatio({ material_ratio: curve, core, line }) {
   const chart = new Chart({
     x: { label: "material ratio", from: 0, to: 1 }, y: { label: "height about the mean", unit: "m", from: curve[curve.length - 1][1], to: curve[0][1] },
     series: [
       { name: "material ratio curve", points: curve, colour: "var(--blue)" },
-      { name: "line of the core (Sk)", points: core, colour: "var(--red)", dashed: true },
+      { name: `line of the core (${line ? "Pk" : "Sk"})`, points: core, colour: "var(--red)", dashed: true },
     ],
   });
   return make("section", {}, make("h2", {}, "Material ratio"), chart.element);
@@ -56,9 +69,9 @@ function materialRatio({ material_ratio: curve, core }) {
 /** Map, statistics and charts of a surface. */
 function surfaceParts(data, field) {
   const half = (...children) => make("div", { class: "columns wide" }, ...children);
-  const numbers = make("section", {}, make("h2", {}, "Statistics"), table(data.lines), make("h2", {}, "ISO 25178-2, no filter"), table(data.parameters));
+  const numbers = make("section", {}, make("h2", {}, "Statistics"), table(data.lines), make("h2", {}, data.line ? "ISO 21920-2, no filter" : "ISO 25178-2, no filter"), table(data.parameters));
   return [
-    half(heightMap(data, field), numbers),
+    half((data.line ? profileChart : heightMap)(data, field), numbers),
     half(...[data.spectrum.length > 1 && spectrumChart(data), heightDistribution(data), data.material_ratio.length > 1 && materialRatio(data)].filter(Boolean)),
   ];
 }
@@ -66,5 +79,6 @@ function surfaceParts(data, field) {
 function surfacePage(data) {
   const field = new EmbeddedField(data.heights);
   const note = "Drag, or press the arrow keys, to turn it. Heights are enlarged.";
+  if (data.line) return surfaceParts(data, field);
   return [...surfaceParts(data, field), reliefView({ heights: field, sides: data.sides, colours: data.heights.colours }, note)];
 }

@@ -37,7 +37,26 @@ function theorySeries({ persson }) {
   }));
 }
 
+/** Charts against a speed or a time, which are logarithmic if the values have constant ratios. */
+function chartsAgainst(data) {
+  const [what, unit] = { speed: ["speed", "m/s"], time: ["time", "s"] }[data.against];
+  const x = { key: what, label: what, unit, log: data.geometric };
+  const has = ({ key }) => data.scenes.some(({ seeds }) => seeds.some((rows) => rows.some((row) => key in row)));
+  const quantities = [
+    { key: "friction", label: "friction coefficient" },
+    { key: "area", label: "contact area A/A0" },
+    { key: "loss-tangent", label: "maximum loss tangent of the waves" },
+    { key: "gap", label: "mean gap", unit: "m" },
+    { key: "penetration", label: "penetration Δ", unit: "m" },
+    { key: "conductance", label: "conductance per conductivity (1/m)" },
+    { key: "permeance", label: "permeance (m³), mean of x and y", log: true },
+  ];
+  const title = (label) => `${label[0].toUpperCase()}${label.slice(1)} against ${what}`;
+  return quantities.filter(has).map((y) => sweepChart(title(y.label.split(/[,(]/)[0].trim()), data, x, y));
+}
+
 function sweepCharts(data) {
+  if (data.against !== "pressure") return chartsAgainst(data);
   const log = data.geometric;
   const pressure = { key: "pressure", label: "mean pressure", unit: "Pa", log };
   const area = { key: "area", label: "contact area A/A0", log };
@@ -45,8 +64,9 @@ function sweepCharts(data) {
   const gap = { key: "gap", label: "mean gap", unit: "m" };
   const stiffness = { key: "stiffness", label: "stiffness", unit: "Pa/m", log: true };
   const conductance = { key: "conductance", label: "conductance per conductivity (1/m)", log: true };
-  const ofBodies = { key: "of_bodies", label: "conductance (unit of the conductivity per m)", log: true };
+  const ofBodies = { key: "of_bodies", label: "conductance (W/(m² K) or S/m²)", log: true };
   const permeance = { key: "permeance", label: "permeance (m³), mean of x and y", log: true };
+  const friction = { key: "friction", label: "friction coefficient" };
   const logPressure = { ...pressure, log: true };
   const has = ({ key }) => data.scenes.some(({ seeds }) => seeds.some((rows) => rows.some((row) => key in row)));
   return [
@@ -56,6 +76,7 @@ function sweepCharts(data) {
     sweepChart("Stiffness against load", data, logPressure, stiffness),
     ...(has(ofBodies) ? [sweepChart("Conductance of the bodies against load", data, logPressure, ofBodies)] : []),
     ...(has(conductance) && !has(ofBodies) ? [sweepChart("Contact conductance against load", data, logPressure, conductance)] : []),
+    ...(has(friction) ? [sweepChart("Friction against load", data, pressure, friction)] : []),
     ...(has(permeance) ? [
       sweepChart("Leakage against load", data, logPressure, permeance),
       sweepChart("Leakage against contact area", data, { ...area, log: false }, permeance),
@@ -107,7 +128,7 @@ class FrameMaps {
 }
 
 /** The maps with a slider over the loads, and a choice of the surface. */
-function sweepFrames({ greatest, surfaces }) {
+function sweepFrames({ greatest, surfaces }, against) {
   const slider = document.createRange().createContextualFragment('<input type="range" min="0" value="0" step="1" aria-label="load">').firstChild;
   const label = make("output", { class: "load" });
   const place = make("div");
@@ -130,17 +151,17 @@ function sweepFrames({ greatest, surfaces }) {
   choice.addEventListener("change", choose);
   choose();
   const which = surfaces.length > 1 ? [make("label", {}, "surface ", choice)] : [];
-  return [make("div", { class: "controls frames" }, ...which, make("label", { class: "loads" }, "load ", slider), label), place];
+  return [make("div", { class: "controls frames" }, ...which, make("label", { class: "loads" }, `${against} `, slider), label), place];
 }
 
 function sweepPage(data) {
   return [
     make("h2", {}, "Curves"),
     make("div", { class: "columns wide" }, ...sweepCharts(data)),
-    ...(data.percolation ? [make("p", {}, data.percolation)] : []),
+    ...data.sealing.map((line) => make("p", {}, line)),
     make("p", { class: "quiet" }, data.note),
-    make("h2", {}, "Contact under each load"),
-    ...(data.frames ? sweepFrames(data.frames) : []),
+    make("h2", {}, data.against === "pressure" ? "Contact under each load" : `Contact at each ${data.against}`),
+    ...(data.frames ? sweepFrames(data.frames, data.against === "pressure" ? "load" : data.against) : []),
     make("p", { class: "quiet" }, data.frames_note),
     ...(data.means ? [make("h2", {}, "Means over the surfaces, with standard errors"), make("div", { class: "scroll" }, table(data.means.rows, data.means.heads))] : []),
     make("h2", {}, "Rows"),

@@ -15,14 +15,9 @@ use super::scenes::{self, OtherKey};
 use crate::curves::folder::Rows;
 use crate::curves::text::aligned;
 use crate::error::CliError;
+use crate::files::names::{COMPARISON_FILE, DIFFERENCE_FILE};
 use crate::files::result::ResultFolder;
 use crate::terminal;
-
-/// Name of the record in the folder of `--out`.
-const RECORD_FILE: &str = "compare.json";
-
-/// Name of the picture in the folder of `--out`.
-const PICTURE_FILE: &str = "difference.png";
 
 /// Heads of the table.
 const HEADS: [&str; 6] = ["", "A", "B", "B - A", "of A", "in bars"];
@@ -84,9 +79,9 @@ fn result(folder: &Path) -> Result<ResultFolder, CliError> {
 fn write(out: &Path, comparison: &Comparison, picture: Option<&Differences>) -> Result<(), CliError> {
     files::check_folder(out)?;
     let mut staged = Staged::new(out)?;
-    staged.add_text(RECORD_FILE, &to_json(comparison))?;
+    staged.add_text(COMPARISON_FILE, &to_json(comparison))?;
     if let Some(picture) = picture {
-        staged.add(PICTURE_FILE, |path| save_png(picture, path))?;
+        staged.add(DIFFERENCE_FILE, |path| save_png(picture, path))?;
     }
     Ok(staged.commit()?)
 }

@@ -4,9 +4,14 @@ use rc_sweep::Cells;
 use serde_json::Value;
 
 /// Numbers that say how a result was found, and not what it is.
-const BOOKKEEPING: [&str; 21] = [
+const BOOKKEEPING: [&str; 26] = [
     "seed",
     "control_value",
+    "speed",
+    "time",
+    "gmres_iterations",
+    "monotone_steps",
+    "friction_bound",
     "grid",
     "border_level",
     "elements",
@@ -29,7 +34,7 @@ const BOOKKEEPING: [&str; 21] = [
 ];
 
 /// Units of columns; others have none.
-const UNITS: [(&str, &str); 19] = [
+const UNITS: [(&str, &str); 24] = [
     ("mean_pressure", "Pa"),
     ("rms_pressure", "Pa"),
     ("rms_pressure_corrected", "Pa"),
@@ -49,9 +54,14 @@ const UNITS: [(&str, &str); 19] = [
     ("elastic_energy", "J"),
     ("permeance_x", "m³"),
     ("permeance_y", "m³"),
+    ("flow_x", "m³/s"),
+    ("flow_y", "m³/s"),
+    ("dissipated_power", "W/m²"),
+    ("speed", "m/s"),
+    ("time", "s"),
 ];
 
-/// A quantity that is drawn against the pressure.
+/// A quantity that is drawn against the pressure, the speed or the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Quantity {
     /// Name of its pictures, and its key on the page.
@@ -64,12 +74,18 @@ pub(crate) struct Quantity {
     pub(crate) unit: &'static str,
 }
 
-/// The mean pressure, against which the others are drawn.
+/// The mean pressure, against which the others are drawn, if neither speed nor time is varied.
 pub(crate) const PRESSURE: Quantity =
     Quantity { name: "pressure", keys: &["mean_pressure"], words: "mean pressure", unit: "Pa" };
 
+/// The varied keys against which the others are drawn.
+pub(crate) const SWEPT: [Quantity; 2] = [
+    Quantity { name: "speed", keys: &["speed"], words: "speed", unit: "m/s" },
+    Quantity { name: "time", keys: &["time"], words: "time", unit: "s" },
+];
+
 /// The quantities that are drawn.
-pub(crate) const QUANTITIES: [Quantity; 7] = [
+pub(crate) const QUANTITIES: [Quantity; 10] = [
     Quantity { name: "area", keys: &["area_fraction"], words: "contact area A/A0", unit: "" },
     Quantity { name: "gap", keys: &["mean_gap"], words: "mean gap", unit: "m" },
     Quantity { name: "penetration", keys: &["penetration"], words: "penetration", unit: "m" },
@@ -80,18 +96,16 @@ pub(crate) const QUANTITIES: [Quantity; 7] = [
         words: "conductance per conductivity",
         unit: "1/m",
     },
-    Quantity {
-        name: "of_bodies",
-        keys: &["conductance"],
-        words: "conductance, unit of the conductivity per m",
-        unit: "",
-    },
+    Quantity { name: "of_bodies", keys: &["conductance"], words: "conductance in W/(m² K) or S/m²", unit: "" },
     Quantity {
         name: "permeance",
         keys: &["permeance_x", "permeance_y"],
         words: "permeance, mean of x and y",
         unit: "m³",
     },
+    Quantity { name: "flow", keys: &["flow_x", "flow_y"], words: "flow, mean of x and y", unit: "m³/s" },
+    Quantity { name: "friction", keys: &["friction"], words: "friction coefficient", unit: "" },
+    Quantity { name: "loss-tangent", keys: &["max_loss_tangent"], words: "maximum loss tangent", unit: "" },
 ];
 
 impl Quantity {
@@ -127,18 +141,12 @@ pub(crate) fn bar_of(cells: &Cells, key: &str) -> Option<f64> {
         "penetration" => "penetration_error_bar".to_owned(),
         "rms_pressure_corrected" => "rms_pressure_error".to_owned(),
         "rms_pressure" => return None,
-        "conductance" => return bar_of_bodies(cells),
         "permeance_x" | "permeance_y" => key.replace("permeance", "permeance_error"),
+        "flow_x" | "flow_y" => key.replace("flow", "flow_error"),
         _ if cells.contains_key(&format!("{key}_error_bar")) => format!("{key}_error_bar"),
         _ => format!("{key}_error"),
     };
     number(cells, &bar)
-}
-
-/// The conductance of the bodies has the relative error of that for unit conductivity.
-fn bar_of_bodies(cells: &Cells) -> Option<f64> {
-    let relative = bar_of(cells, "contact_conductance")? / number(cells, "contact_conductance")?;
-    Some(relative * number(cells, "conductance")?).filter(|bar| bar.is_finite())
 }
 
 /// SI unit of a column.
@@ -158,6 +166,7 @@ mod tests {
             "area_fraction": 0.1, "area_fraction_error": 0.01, "penetration": 2.0, "penetration_error": 9.0,
             "penetration_error_bar": 0.5, "permeance_x": 1.0, "permeance_y": 3.0, "permeance_error_x": 0.1,
             "permeance_error_y": 0.3, "contact_conductance": 4.0, "contact_conductance_error": 1.0, "conductance": 8.0,
+            "conductance_error": 2.0,
             "contact_stiffness": null, "wall_seconds": 1.0,
         });
         let cells: Cells = cells.as_object().expect("an object").clone();

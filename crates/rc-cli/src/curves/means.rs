@@ -32,7 +32,7 @@ impl Mean {
 /// The rows of a scene under one load.
 #[derive(Clone, Debug)]
 pub(crate) struct AtLoad<'a> {
-    /// Prescribed pressure (Pa) or penetration (m).
+    /// The load of the rows.
     pub(crate) load: f64,
     /// A row for each seed.
     pub(crate) rows: Vec<&'a Row>,

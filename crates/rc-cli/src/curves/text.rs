@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use rc_core::quantity::engineering;
 use rc_sweep::files::{self, write_synced};
 use rc_sweep::{Cells, to_json};
 use serde_json::{Value, json};
 
-use super::columns::{PRESSURE, QUANTITIES, Quantity, bar_of, is_result, number, unit_of};
+use super::columns::{PRESSURE, QUANTITIES, Quantity, bar_of, is_result, number};
 use super::means::{AtLoad, Mean};
+use super::sealing::Sealing;
 use super::table::{Row, SweepTable};
 use crate::error::CliError;
 use crate::study::record::{words, words_with_error};
@@ -23,6 +23,7 @@ const MEANS_FILE: &str = "means.csv";
 pub(crate) fn of_sweep(folder: &Path, json: bool, out: Option<&Path>) -> Result<String, CliError> {
     let table = SweepTable::read(folder)?;
     let records = records(&table);
+    let sealing = Sealing::read(folder)?;
     let mut written = String::new();
     if let Some(out) = out {
         files::check_folder(out)?;
@@ -31,9 +32,14 @@ pub(crate) fn of_sweep(folder: &Path, json: bool, out: Option<&Path>) -> Result<
         written = format!("\nwritten to {}\n", path.display());
     }
     if json {
-        return Ok(to_json(&json!({ "control": table.rows[0].control, "means": records })));
+        let mut record = json!({ "control": table.rows[0].control, "means": records });
+        if let Some(sealing) = &sealing {
+            record["sealing"] = json!(sealing);
+        }
+        return Ok(to_json(&record));
     }
-    Ok(table.scenes().into_iter().map(scene).collect::<String>() + &written)
+    let sealing = sealing.map_or_else(String::new, |sealing| sealing.lines());
+    Ok(table.scenes().into_iter().map(scene).collect::<String>() + &sealing + &written)
 }
 
 /// The means of all numbers that are results, a record for each scene and load, with the columns of `means.csv`.
@@ -47,7 +53,8 @@ fn records(table: &SweepTable) -> Vec<Cells> {
         if several {
             cells.insert("scene".to_owned(), at.rows[0].scene.clone().into());
         }
-        cells.insert("load".to_owned(), at.load.into());
+        let load = if table.against == PRESSURE { "load" } else { table.against.name };
+        cells.insert(load.to_owned(), at.load.into());
         cells.insert("seeds".to_owned(), at.rows.len().into());
         for key in &keys {
             let value = |row: &Row| Some([number(&row.cells, key)?, bar_of(&row.cells, key).unwrap_or(0.0)]);
@@ -77,15 +84,14 @@ fn scene(rows: &[Row]) -> String {
     let loads = AtLoad::all(rows);
     let has = |quantity: &&Quantity| loads.iter().any(|at| at.mean(**quantity).is_some());
     let shown: Vec<&Quantity> = QUANTITIES.iter().filter(has).collect();
-    let control = if rows[0].control == "penetration" { "penetration" } else { PRESSURE.key() };
-    let unit = unit_of(control);
+    let control = if rows[0].control == "pressure" { PRESSURE.key() } else { &rows[0].control };
     let mut lines = vec![vec![control.replace('_', " "), "seeds".to_owned()]];
     let others = shown.iter().filter(|quantity| quantity.key() != control);
     let others: Vec<&Quantity> =
-        (control != PRESSURE.key()).then_some(&PRESSURE).into_iter().chain(others.copied()).collect();
-    lines[0].extend(others.iter().map(|quantity| head(quantity).to_owned()));
+        (control == "penetration").then_some(&PRESSURE).into_iter().chain(others.copied()).collect();
+    lines[0].extend(others.iter().map(|quantity| quantity.words.to_owned()));
     for at in &loads {
-        let mut line = vec![engineering(at.load, unit), at.rows.len().to_string()];
+        let mut line = vec![at.rows[0].load_in_words(), at.rows.len().to_string()];
         line.extend(
             others.iter().map(|quantity| at.mean(**quantity).map_or_else(|| "-".to_owned(), |m| cell(quantity, m))),
         );
@@ -93,10 +99,6 @@ fn scene(rows: &[Row]) -> String {
     }
     let label = if rows[0].label.is_empty() { String::new() } else { format!("{}\n", rows[0].label) };
     label + &aligned(&lines) + "\n"
-}
-
-fn head(quantity: &Quantity) -> &'static str {
-    quantity.words.split(',').next().unwrap_or_default()
 }
 
 /// A mean with its standard error, such as `15.10 ± 0.20 µm`.

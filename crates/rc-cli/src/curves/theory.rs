@@ -5,6 +5,7 @@ use rc_theory::persson::Persson;
 use serde::Serialize;
 use serde_json::Value;
 
+use super::columns::PRESSURE;
 use super::table::{Row, SweepTable};
 use crate::scene::keys::ContactKeys;
 use crate::scene::resolve;
@@ -31,7 +32,7 @@ pub(crate) struct PerssonLine {
 ///
 /// Scenes with the same product E* h' share a line. h' is the mean rms slope over the rows.
 pub(crate) fn persson(table: &SweepTable) -> Vec<PerssonLine> {
-    let Some(settings) = &table.settings else { return Vec::new() };
+    let Some(settings) = table.settings.as_ref().filter(|_| table.against == PRESSURE) else { return Vec::new() };
     let pressures = || table.rows.iter().filter_map(|row| row.number("mean_pressure")).filter(|p| *p > 0.0);
     let (low, high) = (pressures().fold(f64::INFINITY, f64::min), pressures().fold(0.0, f64::max));
     if high <= 0.0 {
@@ -61,7 +62,8 @@ fn half_space(rows: &[Row], settings: &Value) -> Option<(f64, f64)> {
     let keys = &settings["surfaces"][rows.first()?.place.as_ref()?.surface];
     let (surface, contact) = (&keys["surface"], &keys["contact"]);
     let is_shape = !surface["shape"].is_null() && surface["waves"].is_null() && surface["heights"].is_null();
-    if is_shape || !contact["hardness"].is_null() || !contact["layer_thickness"].is_null() {
+    let slides = contact["speed"].as_f64().is_some_and(|speed| speed > 0.0);
+    if slides || is_shape || !contact["hardness"].is_null() || !contact["layer_thickness"].is_null() {
         return None;
     }
     let material: ContactKeys = serde_json::from_value(material(contact)).ok()?;

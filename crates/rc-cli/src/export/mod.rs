@@ -15,6 +15,7 @@ use std::path::Path;
 use self::args::ExportArgs;
 use self::fields::{Fields, read_elements};
 use crate::error::CliError;
+use crate::files::names::GROUP;
 use crate::terminal;
 use rc_sweep::files::{self, Staged};
 
@@ -31,14 +32,14 @@ pub(crate) fn run(args: &ExportArgs) -> Result<(), CliError> {
     files::check_folder(target)?;
     let (vtk, zarr) = (args.vtk || !args.zarr, args.zarr);
     if zarr {
-        zarr::check_place(&target.join(xarray::GROUP))?;
+        zarr::check_place(&target.join(GROUP))?;
     }
     let mut staged = Staged::new(target)?;
     if vtk {
         add_vtk(&mut staged, &args.folder, &fields)?;
     }
     if zarr {
-        staged.add(xarray::GROUP, |path| zarr::write(path, &xarray::group(&fields)))?;
+        staged.add(GROUP, |path| zarr::write(path, &xarray::group(&fields)))?;
     }
     let names = staged.names().to_vec();
     staged.commit()?;

@@ -8,9 +8,6 @@ use serde_json::{Value, json};
 use super::fields::Fields;
 use super::zarr::{Array, Group, Values};
 
-/// Name of the group in the folder of the result.
-pub(crate) const GROUP: &str = "fields.zarr";
-
 /// Dimensions of a field: rows, columns.
 const PLANE: &[&str] = &["y", "x"];
 

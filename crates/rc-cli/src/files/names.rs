@@ -17,3 +17,27 @@ pub(crate) const SUMMARY_FILE: &str = "summary.json";
 
 /// The table of an isotropic spectrum.
 pub(crate) const PSD_FILE: &str = "psd.csv";
+
+/// A page.
+pub(crate) const PAGE_FILE: &str = "report.html";
+
+/// The record of a study.
+pub(crate) const STUDY_FILE: &str = "study.json";
+
+/// The picture of a running solve.
+pub(crate) const WATCH_FILE: &str = "watch.png";
+
+/// The Zarr group of the fields.
+pub(crate) const GROUP: &str = "fields.zarr";
+
+/// The record of a comparison.
+pub(crate) const COMPARISON_FILE: &str = "compare.json";
+
+/// The picture of a comparison.
+pub(crate) const DIFFERENCE_FILE: &str = "difference.png";
+
+/// The coefficients of waves.
+pub(crate) const WAVES_FILE: &str = "spectrum.txt";
+
+/// The overlap that plastic flow has removed, with a hardness.
+pub(crate) const PLASTIC_GAP_FILE: &str = "plastic_gap.npy";

@@ -5,15 +5,12 @@ use std::path::Path;
 use rc_core::{Field, Grid, PeriodicCell};
 
 use crate::error::CliError;
-use crate::files::names::SUMMARY_FILE;
+use crate::files::names::{PLASTIC_GAP_FILE, SUMMARY_FILE};
 use crate::scene::file;
 use crate::scene::heights::check_finite;
 use crate::scene::resolve;
 use rc_heights::npy;
 use rc_sweep::Summary;
-
-/// File of the overlap that plastic flow has removed, with a hardness.
-pub const PLASTIC_GAP_FILE: &str = "plastic_gap.npy";
 
 /// A folder that `rc solve --out` has written.
 #[derive(Clone, Debug)]
@@ -90,6 +87,12 @@ impl ResultFolder {
     #[must_use]
     pub fn sides(&self) -> [f64; 2] {
         [self.side, self.side * self.pressure.grid().cell_ratio()]
+    }
+
+    /// Whether it is the line contact of a profile, which has one row.
+    #[must_use]
+    pub fn is_line(&self) -> bool {
+        self.summary.grid[1] == 1
     }
 
     /// Whether the fields have one value for each element.

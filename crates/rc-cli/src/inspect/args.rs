@@ -110,6 +110,29 @@ impl InspectArgs {
         Scene { surface: SurfaceKeys { heights: None, ..self.keys() }, run, ..Scene::default() }
     }
 
+    /// The first flag that says how a file is read, which only height maps and profiles have.
+    pub(super) fn of_reading(&self) -> Option<&'static str> {
+        let given = [
+            ("unit", self.unit.is_some()),
+            ("height_unit", self.height_unit.is_some()),
+            ("height_scale", self.height_scale.is_some()),
+            ("missing", self.missing.is_some()),
+            ("mask", self.mask.is_some()),
+            ("channel", self.channel.is_some()),
+            ("layout", self.layout.is_some()),
+        ];
+        given.into_iter().chain(self.of_profiles()).find(|(_, is_given)| *is_given).map(|(key, _)| key)
+    }
+
+    /// The flags of profiles, and whether they are given.
+    pub(super) fn of_profiles(&self) -> [(&'static str, bool); 3] {
+        [
+            ("lambda_s", self.lambda_s.is_some()),
+            ("lambda_c", self.lambda_c.is_some()),
+            ("psd_out", self.psd_out.is_some()),
+        ]
+    }
+
     /// How the command prints its warnings.
     pub(crate) fn run_keys(&self) -> RunKeys {
         RunKeys { strict: self.strict, ..RunKeys::default() }

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use rc_core::quantity::digits;
 use rc_core::{Field, PeriodicCell};
 use rc_fractal::moments_of_grid;
-use rc_heights::{ChannelInfo, HeightMap, npy};
+use rc_heights::{ChannelInfo, HeightMap, ReadParams, npy};
 use rc_solver::PressureStatistics;
 use rc_sweep::memory::Budget;
 use rc_sweep::{Summary, Warning, files, to_json};
@@ -56,6 +56,9 @@ struct ResultStatistics {
 /// [`CliError::Input`] when the file is neither a height map nor part of a result.
 pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
     let of_scene = is_scene(&args.file) && !args.spectrum;
+    if of_scene && args.of_profiles().iter().any(|(_, is_given)| *is_given) {
+        return terminal::print(&of_prepared_profile(args)?);
+    }
     if let Some(rows) = Rows::of(&args.file)?.filter(|_| !args.spectrum && !of_scene) {
         return terminal::print(&of_rows(args, &rows)?);
     }
@@ -67,6 +70,7 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
             return Err(CliError::input("out: the pictures of a result are made by rc plot; omit --out"));
         }
         Some(folder) => {
+            check_unread(args, "a result")?;
             let (text, warnings) = inspect_result(&folder, args.json)?;
             refuse(&warnings, args.strict, "")?;
             tell(&warnings, &args.run_keys());
@@ -76,7 +80,10 @@ pub(crate) fn run(args: &InspectArgs) -> Result<(), CliError> {
             let statistics = PressureStatistics::of(&finite(&args.file, npy::read(&args.file)?)?);
             if args.json { to_json(&statistics) } else { text::pressure(&statistics, statistics.grid) }
         }
-        None if args.spectrum => inspect_waves(args)?,
+        None if args.spectrum => {
+            check_no_profile(args)?;
+            inspect_waves(args)?
+        }
         None if of_scene => shown(args, &of_surface(&args.file, args.over_scene())?)?,
         None => match Profile::read(&args.file, &args.keys())? {
             Some(found) => profile::shown(args, &found)?,
@@ -91,6 +98,7 @@ fn of_rows(args: &InspectArgs, rows: &Rows) -> Result<String, CliError> {
     if args.cell.is_some() || args.cell_y.is_some() {
         return Err(CliError::input("cell: the rows of a sweep have their own; omit --cell and --cell-y"));
     }
+    check_unread(args, if matches!(rows, Rows::Sweep) { "a sweep" } else { "a study" })?;
     match rows {
         Rows::Sweep => curves_text::of_sweep(&args.file, args.json, args.out.as_deref()),
         Rows::Study(_) if args.out.is_some() => {
@@ -203,7 +211,7 @@ impl Inspected {
             assumed.extend(of_side.assumed);
             (side, of_side.cell_y)
         };
-        let mut warnings = warnings::surface::of_map(&map);
+        let mut warnings = warnings::surface::of_file(path, &map);
         warnings.extend(warnings::surface::assumed(&assumed));
         let mut notes: Vec<_> =
             map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
@@ -256,17 +264,47 @@ pub(crate) fn draw_surface(path: &Path, folder: &Path, quiet: bool) -> Result<Ve
 
 /// Statistics of a height map, which has no filters of profiles.
 fn of_map(args: &InspectArgs) -> Result<String, CliError> {
-    let flags = [
-        ("lambda_s", args.lambda_s.is_some()),
-        ("lambda_c", args.lambda_c.is_some()),
-        ("psd_out", args.psd_out.is_some()),
-    ];
-    match flags.iter().find(|(_, is_given)| *is_given) {
+    check_no_profile(args)?;
+    inspect_heights(args)
+}
+
+/// Refuses the flags of profiles for a map.
+fn check_no_profile(args: &InspectArgs) -> Result<(), CliError> {
+    match args.of_profiles().iter().find(|(_, is_given)| *is_given) {
         Some((key, _)) => {
             Err(CliError::input(format_args!("{key}: applies to profiles, lines x z; omit it for a map")))
         }
-        None => inspect_heights(args),
+        None => Ok(()),
     }
+}
+
+/// Refuses the flags of maps and profiles for the folder of `what`.
+fn check_unread(args: &InspectArgs, what: &str) -> Result<(), CliError> {
+    match args.of_reading() {
+        Some(key) => {
+            Err(CliError::input(format_args!("{key}: applies to height maps and profiles; omit it for {what}")))
+        }
+        None => Ok(()),
+    }
+}
+
+/// The text about the profile of a scene with `line`, after the filters of the flags.
+fn of_prepared_profile(args: &InspectArgs) -> Result<String, CliError> {
+    let Scene { surface, .. } = resolve::layers(Some(&args.file), args.over_scene())?;
+    let Some(path) = surface.heights.clone().filter(|_| surface.line) else {
+        return check_no_profile(args).map(|()| String::new());
+    };
+    let map = heights::read(&path, &ReadParams { row_is_map: true, ..surface.read_params() }, surface.scales())?;
+    let CellOfMap { cell, .. } = CellOfMap::of(&path, &map, [surface.cell, surface.cell])?;
+    let length = cell.ok_or_else(|| CliError::in_file(&path, "a profile without a length; give cell (m)"))?;
+    let values = map.heights.into_values();
+    let (spacing, notes) = (length / values.len() as f64, map.notes);
+    // The spectrum and the sections of a mirrored profile would be those of its edges too.
+    let is_mirrored = origin::of(&path, None).treatments.iter().any(|step| step == "periodic mirror");
+    let measured = if is_mirrored { &values[..values.len() / 2] } else { &values[..] };
+    let text = profile::shown(args, &Profile { heights: measured.to_vec(), spacing, notes })?;
+    let note = "note: this is the measured half, without its mirror image\n";
+    Ok(if is_mirrored && !args.json { text + note } else { text })
 }
 
 /// Statistics of a height map, after a list of its channels if it has several.

@@ -217,6 +217,11 @@ impl ProfileRecord {
         let missing = heights.iter().filter(|height| height.is_nan()).count();
         let whole = without_holes(heights);
         let (kept, sections) = roughness(&whole, *spacing, [args.lambda_s, args.lambda_c])?;
+        let filtered = match (args.lambda_s, args.lambda_c) {
+            (_, Some(_)) => ProfileParameters::about(0.0, &kept, sections),
+            (Some(_), None) => ProfileParameters::of(&kept),
+            (None, None) => ProfileParameters::of(heights),
+        };
         let steps = whole.windows(2).map(|pair| ((pair[1] - pair[0]) / spacing).powi(2));
         let measured = || heights.iter().copied().filter(|height| !height.is_nan());
         let [h_min, h_max] = [measured().fold(f64::INFINITY, f64::min), measured().fold(f64::NEG_INFINITY, f64::max)];
@@ -235,9 +240,7 @@ impl ProfileRecord {
         let mut warnings: Vec<Warning> = warnings::surface::assumed(&assumed).into_iter().collect();
         warnings.extend(shape.warnings());
         // Of a profile without filters, missing points are passed over, but an element goes on beyond them.
-        let is_filtered = args.lambda_s.or(args.lambda_c).is_some();
-        let filtered = ProfileParameters::of(if is_filtered { &kept } else { heights }, sections);
-        let unfiltered = ProfileParameters::of(heights, 1);
+        let unfiltered = ProfileParameters::of(heights);
         let width = |heights: &[f64], z: f64, sections: usize| {
             let section = heights.len() as f64 / sections as f64;
             mean_width_of_elements(heights, z, section).map(|steps| steps * spacing)
@@ -310,7 +313,10 @@ impl ProfileRecord {
         }
         let note = "\nP: the whole profile about its mean, without a filter (ISO 21920-2). ";
         let more = match self.filters() {
-            Some(_) => "R: after the filters; Rp, Rv and Rz are means over the sections.\n",
+            Some(_) if self.lambda_c.is_some() => {
+                "R: after the filters, above the mean line of λc; Rp, Rv and Rz are means over the sections.\n"
+            }
+            Some(_) => "R: after the filter, about the mean.\n",
             None => "Give --lambda-c (and --lambda-s) for the R parameters of the filtered profile.\n",
         };
         aligned(&lines)

@@ -52,7 +52,7 @@ pub(crate) fn heights(s: &SurfaceRecord) -> String {
 /// Names and values of the statistics of a surface.
 pub(crate) fn surface_lines(s: &SurfaceRecord) -> Vec<(&'static str, String)> {
     let lines = [
-        ("cell", format!("{} with {} x {} elements", cell([s.cell, s.cell_y]), s.grid[0], s.grid[1])),
+        ("cell", cell_line(s)),
         ("missing", missing(s)),
         (
             "heights",
@@ -64,12 +64,30 @@ pub(crate) fn surface_lines(s: &SurfaceRecord) -> Vec<(&'static str, String)> {
             ),
         ),
         ("rms height", engineering(s.rms_height, "m")),
-        ("rms slope", digits(s.rms_slope, 4)),
+        ("rms slope", slope(s)),
         ("rms curvature", s.rms_curvature.map_or_else(not_known, |curvature| format!("{} 1/m", digits(curvature, 4)))),
         ("Nayak parameter", s.nayak.map_or_else(not_known, |nayak| digits(nayak, 4))),
         ("skewness, kurtosis", format!("{}, {}", digits(s.skewness, 3), digits(s.kurtosis, 4))),
     ];
     lines.into_iter().filter(|(name, _)| *name != "missing" || s.missing > 0).collect()
+}
+
+/// Text of the rms slope. Of a map that is not periodic, the step across its border is no slope of the surface.
+fn slope(s: &SurfaceRecord) -> String {
+    let [inside, whole] = [s.shape().rms_slope, s.rms_slope].map(|slope| digits(slope, 4));
+    if inside == whole {
+        whole
+    } else {
+        format!("{inside} between neighbours, {whole} with the step across the border")
+    }
+}
+
+/// Text of the cell with its elements. A profile has one row.
+fn cell_line(s: &SurfaceRecord) -> String {
+    match s.grid {
+        [nx, 1] => format!("a profile of {} with {nx} elements", engineering(s.cell, "m")),
+        [nx, ny] => format!("{} with {nx} x {ny} elements", cell([s.cell, s.cell_y])),
+    }
 }
 
 /// Text of the number of missing points.

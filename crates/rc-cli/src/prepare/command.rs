@@ -5,12 +5,13 @@ use std::path::Path;
 use rc_heights::{HeightMap, Treatment};
 use rc_sweep::files::Staged;
 use rc_sweep::memory::Budget;
-use rc_sweep::{files, to_json};
+use rc_sweep::to_json;
 
 use super::args::{PrepareArgs, after_crops, check_filled, treatments};
 use super::pictures;
 use super::record::PrepareRecord;
 use crate::error::CliError;
+use crate::files::kind::Kind;
 use crate::files::names::PREPARE_FILE;
 use crate::run::threads;
 use crate::scene::keys::{ContactKeys, Scene};
@@ -35,7 +36,7 @@ pub(crate) fn run(args: PrepareArgs) -> Result<(), CliError> {
     threads::start(run.threads)?;
     let budget = Budget::new(run.memory_limit);
     let folder = run.out.as_deref().unwrap_or(Path::new("."));
-    files::check_folder(folder)?;
+    Kind::Surface.check_out(folder)?;
     let read = treated::read(surface)?;
     let before = read.map.clone();
     if keys.fill.is_none() {

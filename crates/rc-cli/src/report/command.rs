@@ -19,7 +19,7 @@ fn word(value: &Value) -> Option<String> {
     match value {
         Value::Null => None,
         Value::String(text) => Some(quoted(text)),
-        other => Some(other.to_string()),
+        other => Some(quoted(&other.to_string())),
     }
 }
 

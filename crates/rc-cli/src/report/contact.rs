@@ -19,11 +19,11 @@ use crate::error::CliError;
 use crate::files::result::ResultFolder;
 use crate::scene::file;
 use crate::scene::keys::{KernelName, Scene};
-use crate::scene::resolve;
+use crate::scene::resolve::{self, sliding};
 use crate::text;
 use rc_core::quantity::{digits, engineering};
 use rc_plot::Palette;
-use rc_sweep::Summary;
+use rc_sweep::{FrictionSummary, Summary};
 
 /// Number of bins of the stress distribution.
 const BINS: usize = 80;
@@ -46,6 +46,8 @@ pub(super) struct Contact {
     lines: Vec<(&'static str, String)>,
     spots: Option<SpotSizes>,
     leakage: Option<FlowPicture>,
+    /// Direction of a surface that slides, as a unit vector.
+    direction: Option<[f64; 2]>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -58,6 +60,8 @@ struct Maps {
     gap: EmbeddedField,
     /// Fraction of each pixel in contact, or fraction of its stored means that are above 0.
     contact: EmbeddedField,
+    /// Whether the contact is that of a profile.
+    line: bool,
     /// Whether the fields have one value for each element.
     of_elements: bool,
     /// Place of the maximum pressure, in fractions of the cell.
@@ -90,6 +94,8 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
     let kernel = resolve::kernel(scene.contact.kernel.unwrap_or(KernelName::Love));
     let bias = kernel.map_or_else(EdgeBias::default, |kernel| kernel.edge_bias(result.pressure.grid()));
     let summary = &result.summary;
+    let sliding = sliding::in_words(&scene.contact);
+    let slides = scene.contact.speed.is_some_and(|speed| speed > 0.0);
     let load = match summary.control.as_str() {
         "penetration" => format!("at a penetration of {}", engineering(summary.penetration, "m")),
         "force" => {
@@ -118,14 +124,15 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
         kind: "result",
         body: Contact {
             maps: maps(&result),
-            kappa: surface.as_ref().filter(|_| !scene.surface.has_shape()).and_then(|surface| {
+            kappa: surface.as_ref().filter(|_| !scene.surface.has_shape() && !slides).and_then(|surface| {
                 kappa(summary, result.e_star, surface.nayak().filter(|_| scene.contact.layer_thickness.is_none()))
             }),
             surface,
             no_surface,
             stress: stress(&result),
             certificate: Certificate::of(summary),
-            lines: text::solved_lines(summary, result.sides(), result.e_star),
+            lines: lines(summary, &result, sliding),
+            direction: slides.then(|| sliding::direction(&scene.contact).to_array()),
             leakage: FlowPicture::of(folder, summary),
             // This comes last, since it takes the fields.
             spots: SpotSizes::of_result(result, bias, scene.contact.boundary.unwrap_or_default()),
@@ -133,11 +140,22 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
     })
 }
 
+/// The lines that `rc solve` prints, with how the surface slides.
+fn lines(summary: &Summary, result: &ResultFolder, sliding: Option<String>) -> Vec<(&'static str, String)> {
+    let mut lines = text::solved_lines(summary, result.sides(), result.e_star);
+    let place = lines.iter().position(|(name, _)| *name == "friction").unwrap_or(0);
+    if let Some(sliding) = sliding {
+        lines.insert(place, ("sliding", sliding));
+    }
+    lines
+}
+
 fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
     let keys = &scene.surface;
     let surface = match (keys.file(), keys.waves, keys.hurst, keys.seed) {
         (Some(("spectrum", _)), ..) => "a surface of given waves".to_owned(),
         (Some(("psd", _)), _, _, Some(seed)) => format!("a surface of a tabulated spectrum, seed {seed}"),
+        (Some(_), ..) if result.is_line() => "a profile".to_owned(),
         (Some(_), ..) => "a height map".to_owned(),
         (None, None, ..) if keys.is_shape() => "a shape".to_owned(),
         (None, Some(waves), Some(hurst), Some(seed)) => format!("{waves} waves, H = {hurst}, seed {seed}"),
@@ -147,16 +165,18 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
     let place = match (scene.contact.boundary, scene.contact.layer_thickness) {
         (Some(Boundary::Free), _) => "on a free patch of".to_owned(),
         (_, Some(thickness)) => format!("on a layer of {}, in a cell of", engineering(thickness, "m")),
+        _ if result.is_line() => "periodic with".to_owned(),
         _ => "in a cell of".to_owned(),
     };
+    let [nx, ny] = s.grid;
+    let elements =
+        if result.is_line() { format!("{nx} elements, line contact") } else { format!("{nx} x {ny} elements") };
     format!(
-        "{surface}: rms height {}, rms slope {}, {place} {}; E* = {}; {} x {} elements, kernel {}, method {}",
+        "{surface}: rms height {}, rms slope {}, {place} {}; E* = {}; {elements}, kernel {}, method {}",
         engineering(s.rms_height, "m"),
         digits(s.rms_slope, 4),
         text::cell(result.sides()),
         engineering(result.e_star, "Pa"),
-        s.grid[0],
-        s.grid[1],
         s.kernel,
         s.method
     )
@@ -173,6 +193,9 @@ fn tiles(s: &Summary) -> Vec<Tile> {
         tile("maximum pressure", engineering(s.max_pressure, "Pa")),
         tile("stiffness", text::stiffness(s)),
     ];
+    if let Some(FrictionSummary { friction, friction_error, .. }) = s.friction {
+        tiles.insert(1, tile("friction", text::with_error(friction, friction_error)));
+    }
     if let (Some(fraction), Some(error)) = (s.plastic_area_fraction, s.plastic_area_fraction_error) {
         tiles.insert(1, tile("plastic area", format!("{} %", text::with_error(100.0 * fraction, 100.0 * error))));
     }
@@ -207,7 +230,9 @@ fn maps(result: &ResultFolder) -> Maps {
     let widest = Some(gaps.max()).filter(|gap| *gap > ROUNDING * summary.penetration_full_contact).unwrap_or(0.0);
     let what = if of_elements { "element" } else { "stored value" };
     let pixel = if grid == pixels {
-        format!("Every {what} is a pixel.")
+        format!("Every {what} is a {}.", if grid.ny() > 1 { "pixel" } else { "point" })
+    } else if grid.ny() == 1 {
+        format!("The curves have {} points, each a mean over a block of the {} {what}s.", pixels.nx(), grid.nx())
     } else {
         format!(
             "The maps have at most {MOST_PIXELS} x {MOST_PIXELS} pixels. Each pixel is a mean over a block of the {grid} {what}s."
@@ -225,6 +250,7 @@ fn maps(result: &ResultFolder) -> Maps {
     };
     Maps {
         sides: result.sides(),
+        line: grid.ny() == 1,
         pressure: EmbeddedField::of_contact(&pressures, pressures.max(), Bits::Sixteen, Palette::Heat),
         gap: EmbeddedField::of_gap(&gaps, widest, Bits::Sixteen, Palette::Viridis),
         contact: EmbeddedField::of_contact(&contact, 1.0, Bits::Eight, Palette::Ink),
@@ -259,10 +285,11 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
     let notes = vec![
         over.to_owned(),
         format!(
-            "The fit has one constant: Λ = {} E*², {} times the theory's (E* h')²/8, with the rms slope h'. The area of the fit is \
+            "The fit has one constant: Λ = {} E*², {} times the theory's (E* h')²/8{}, with the rms slope h'. The area of the fit is \
              erf(σ0/2√Λ) = {} %, and the solved area is {} %.",
             digits(fit.lambda / (e_star * e_star), 4),
             digits(fit.lambda / (e_star * e_star) / theory.lambda, 3),
+            if summary.friction.is_some() { " of the relaxed solid" } else { "" },
             digits(100.0 * fit.area_fraction(), 3),
             digits(100.0 * summary.area_fraction, 3)
         ),

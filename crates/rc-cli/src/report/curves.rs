@@ -9,8 +9,9 @@ use serde_json::Value;
 use super::frames::Frames;
 use super::page::{Page, Text, Tile, made};
 use super::{percolation, sweep_command};
-use crate::curves::columns::{PRESSURE, QUANTITIES, Quantity};
+use crate::curves::columns::{PRESSURE, QUANTITIES, Quantity, SWEPT, bar_of};
 use crate::curves::means::{AtLoad, Mean};
+use crate::curves::sealing::Sealing;
 use crate::curves::table::{Row, SweepTable};
 use crate::curves::text::cell;
 use crate::curves::theory::{PerssonLine, persson};
@@ -23,6 +24,8 @@ use rc_sweep::WarningCode;
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Curves {
     scenes: Vec<SceneCurves>,
+    /// What the quantities are drawn against: `pressure`, `speed` or `time`.
+    against: &'static str,
     /// Whether the loads have a constant ratio, so that logarithmic axes show them evenly.
     geometric: bool,
     persson: Vec<PerssonLine>,
@@ -33,8 +36,8 @@ pub(super) struct Curves {
     heads: Vec<&'static str>,
     rows: Vec<Vec<String>>,
     note: String,
-    /// Sentence about the end of percolation, for a sweep with flows.
-    percolation: Option<String>,
+    /// Sentences about the pressures or areas at which the film closes, for a sweep with flows.
+    sealing: Vec<String>,
 }
 
 /// A table of text.
@@ -70,22 +73,32 @@ pub(super) fn page(folder: &Path) -> Result<Page<Curves>, CliError> {
     let files = text.map(|text| Text { title: "Settings of the sweep", text }).into_iter().collect();
     Ok(Page {
         title: format!("Sweep: {}", folder.file_name().unwrap_or(folder.as_os_str()).display()),
-        subtitle: format!(
-            "{} on {}, at prescribed {}s",
-            count(rows.len(), "row"),
-            count(table.surfaces().len(), "surface"),
-            rows[0].control
-        ),
+        subtitle: subtitle(&table),
         status,
         good,
         warnings: warnings(rows),
-        tiles: tiles(rows),
+        tiles: tiles(&table),
         commands: settings.map_or_else(Vec::new, sweep_command::commands),
         files,
         made: made(),
         kind: "sweep",
-        body: body(&table)?,
+        body: body(folder, &table)?,
     })
+}
+
+/// Whether keys of the scenes were varied, of which some change the surface and others the contact.
+fn is_varied(rows: &[Row]) -> bool {
+    rows.iter().any(|row| row.label != row.scene)
+}
+
+fn subtitle(table: &SweepTable) -> String {
+    let n = |what| count(table.surfaces().len(), what);
+    let (rows, control) = (count(table.rows.len(), "row"), &table.rows[0].control);
+    if table.against == PRESSURE {
+        format!("{rows} on {}, at prescribed {control}s", n(if is_varied(&table.rows) { "problem" } else { "surface" }))
+    } else {
+        format!("{rows} in {}, at several {control}s", n("curve"))
+    }
 }
 
 /// One line for each code of a warning, with the number of its rows.
@@ -131,7 +144,7 @@ impl SceneCurves {
 /// The point with value and error of each quantity that has them.
 fn point(of: impl Fn(Quantity) -> Option<[f64; 2]>) -> Point {
     let mut point = Point::new();
-    for quantity in [PRESSURE].into_iter().chain(QUANTITIES) {
+    for quantity in [PRESSURE].into_iter().chain(SWEPT).chain(QUANTITIES) {
         if let Some([value, error]) = of(quantity) {
             point.insert(quantity.name.to_owned(), value);
             point.insert(format!("{}_error", quantity.name), error);
@@ -140,7 +153,8 @@ fn point(of: impl Fn(Quantity) -> Option<[f64; 2]>) -> Point {
     point
 }
 
-fn tiles(rows: &[Row]) -> Vec<Tile> {
+fn tiles(table: &SweepTable) -> Vec<Tile> {
+    let (rows, against) = (&table.rows, table.against);
     let range = |key: &str| {
         let values = rows.iter().filter_map(|row| row.number(key));
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
@@ -152,16 +166,20 @@ fn tiles(rows: &[Row]) -> Vec<Tile> {
     };
     let (low, high) = range("area_fraction");
     let seconds: f64 = rows.iter().filter_map(|row| row.number("wall_seconds")).sum();
-    vec![
+    let (least, most) = range("friction");
+    let friction = (most >= least).then(|| format!("{} – {}", digits(least, 3), digits(most, 3)));
+    let friction = friction.map(|value| Tile { name: "friction", value });
+    let tiles = vec![
         Tile { name: "rows", value: rows.len().to_string() },
-        Tile { name: "mean pressure", value: from_to("mean_pressure", "Pa") },
+        Tile { name: against.words, value: from_to(against.key(), against.unit) },
         Tile { name: "contact area", value: format!("{} – {} %", digits(100.0 * low, 3), digits(100.0 * high, 3)) },
         Tile { name: "penetration", value: from_to("penetration", "m") },
         Tile { name: "time of all rows", value: format!("{} s", digits(seconds, 3)) },
-    ]
+    ];
+    tiles.into_iter().chain(friction).collect()
 }
 
-fn body(table: &SweepTable) -> Result<Curves, CliError> {
+fn body(folder: &Path, table: &SweepTable) -> Result<Curves, CliError> {
     let (frames, frames_note) = Frames::of(table)?;
     let scenes: Vec<SceneCurves> = table.scenes().into_iter().map(SceneCurves::of).collect();
     let several = scenes.len() > 1;
@@ -169,22 +187,39 @@ fn body(table: &SweepTable) -> Result<Curves, CliError> {
         let key = (row.scene.clone(), row.seed);
         Some((key, row.number("area_fraction")?, [row.number("permeance_x")?, row.number("permeance_y")?]))
     });
-    let name = if table.rows.iter().any(|row| row.label != row.scene) { "variation" } else { "scene" };
+    let sealing = match Sealing::read(folder)? {
+        Some(sealing) => sealing.lines().lines().map(sentence).collect(),
+        None => percolation::note(flows.collect()).into_iter().collect(),
+    };
+    let name = if is_varied(&table.rows) { "variation" } else { "scene" };
     let mut heads = if several { vec![name] } else { Vec::new() };
-    heads.extend(["seed", "mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness", "status"]);
+    let against = (table.against != PRESSURE).then_some(table.against);
+    heads.push("seed");
+    heads.extend(against.map(|quantity| quantity.words));
+    heads.extend(["mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness"]);
+    heads.extend(MORE.into_iter().filter(|column| column.is_in(&table.rows)).map(|column| column.head));
+    heads.push("status");
     let persson = persson(table);
     Ok(Curves {
-        percolation: percolation::note(flows.collect()),
+        sealing,
+        against: table.against.name,
         geometric: table.is_geometric(),
         means: means(table, name),
         heads,
-        rows: table.rows.iter().map(|row| cells(row, several)).collect(),
+        rows: table.rows.iter().map(|row| cells(row, several, &table.rows)).collect(),
         note: note(&scenes, !persson.is_empty()),
         scenes,
         persson,
         frames,
         frames_note,
     })
+}
+
+/// A line of the command as a sentence.
+fn sentence(line: &str) -> String {
+    let mut letters = line.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    format!("{}{}.", first.unwrap_or_default(), letters.as_str())
 }
 
 fn note(scenes: &[SceneCurves], has_theory: bool) -> String {
@@ -224,7 +259,7 @@ fn means(table: &SweepTable, name: &'static str) -> Option<Table> {
         return None;
     }
     let has = |quantity: &Quantity| all.iter().any(|at| at.mean(*quantity).is_some());
-    let shown: Vec<Quantity> = [PRESSURE].into_iter().chain(QUANTITIES).filter(has).collect();
+    let shown: Vec<Quantity> = [PRESSURE].into_iter().chain(SWEPT).chain(QUANTITIES).filter(has).collect();
     let mut heads = if several { vec![name] } else { Vec::new() };
     heads.push("surfaces");
     heads.extend(shown.iter().map(|quantity| quantity.words));
@@ -239,18 +274,52 @@ fn means(table: &SweepTable, name: &'static str) -> Option<Table> {
 }
 
 /// The cells of a row.
-fn cells(row: &Row, several: bool) -> Vec<String> {
+fn cells(row: &Row, several: bool, all: &[Row]) -> Vec<String> {
     let of = |key: &str, unit| row.number(key).map_or_else(|| "–".to_owned(), |value| engineering(value, unit));
     let [area, error] = ["area_fraction", "area_fraction_error"].map(|key| 100.0 * row.number(key).unwrap_or(0.0));
     let mut cells = if several { vec![row.label.clone()] } else { Vec::new() };
+    cells.push(row.seed.map_or_else(|| "–".to_owned(), |seed| seed.to_string()));
+    cells.extend(SWEPT.iter().any(|one| one.name == row.control).then(|| row.load_in_words()));
     cells.extend([
-        row.seed.map_or_else(|| "–".to_owned(), |seed| seed.to_string()),
         of("mean_pressure", "Pa"),
         of("penetration", "m"),
         text::with_error(area, error),
         of("mean_gap", "m"),
-        row.number("contact_stiffness").map_or_else(|| "infinite".to_owned(), |value| engineering(value, "Pa/m")),
-        row.status.replace('_', " "),
+        match row.number("contact_stiffness") {
+            Some(value) => engineering(value, "Pa/m"),
+            None if row.cells.contains_key("contact_stiffness") => "infinite".to_owned(),
+            None => "–".to_owned(),
+        },
     ]);
+    cells.extend(MORE.iter().filter(|column| column.is_in(all)).map(|column| column.cell(row)));
+    cells.push(row.status.replace('_', " "));
     cells
+}
+
+/// A column of the table that only some sweeps have.
+struct Column {
+    head: &'static str,
+    key: &'static str,
+}
+
+const MORE: [Column; 6] = [
+    Column { head: "friction", key: "friction" },
+    Column { head: "conductance (W/(m² K) or S/m²)", key: "conductance" },
+    Column { head: "permeance along x (m³)", key: "permeance_x" },
+    Column { head: "permeance along y (m³)", key: "permeance_y" },
+    Column { head: "flow along x (m³/s)", key: "flow_x" },
+    Column { head: "flow along y (m³/s)", key: "flow_y" },
+];
+
+impl Column {
+    fn is_in(&self, rows: &[Row]) -> bool {
+        rows.iter().any(|row| row.number(self.key).is_some())
+    }
+
+    /// The number with its bar.
+    fn cell(&self, row: &Row) -> String {
+        let Some(value) = row.number(self.key) else { return "–".to_owned() };
+        let bar = bar_of(&row.cells, self.key);
+        bar.map_or_else(|| digits(value, 4), |bar| format!("{} ± {}", digits(value, 4), digits(bar, 1)))
+    }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rc_core::Field;
-use rc_core::quantity::{count, digits, engineering};
+use rc_core::quantity::{count, digits};
 use rc_plot::{Palette, PixelMean};
 use serde::Serialize;
 
@@ -144,8 +144,7 @@ impl SurfaceFrames {
 
 impl Frame {
     fn of(row: &Row, means: &Means, greatest: f64) -> Self {
-        let unit = if row.control == "penetration" { "m" } else { "Pa" };
-        let load = engineering(row.load, unit);
+        let load = row.load_in_words();
         let area = digits(100.0 * row.number("area_fraction").unwrap_or_default(), 3);
         Self {
             label: format!("{} {load}, contact area {area} %", row.control),

@@ -31,15 +31,12 @@ pub(crate) use self::command::{flags, quoted};
 use self::args::ReportArgs;
 use crate::curves::folder::no_table;
 use crate::error::CliError;
-use crate::files::names::SUMMARY_FILE;
+use crate::files::names::{PAGE_FILE, SUMMARY_FILE};
 use crate::files::result::no_folder;
 use crate::inspect::{folder_of, is_scene};
 use crate::study::record::StudyRecord;
 use crate::terminal;
 use rc_sweep::{TABLE_FILE, files, settings_in};
-
-/// Name of the page in a folder.
-pub(crate) const PAGE_FILE: &str = "report.html";
 
 /// The page of the study in `folder`.
 pub(crate) fn of_study(folder: &Path, record: &StudyRecord) -> String {

@@ -1,6 +1,6 @@
 //! The area at which a load curve loses percolation.
 
-use rc_core::quantity::digits;
+use rc_core::quantity::{count, digits};
 
 /// Scene and seed of a surface.
 type Surface = (String, Option<u64>);
@@ -20,15 +20,13 @@ pub(super) fn note(mut rows: Vec<(Surface, f64, [f64; 2])>) -> Option<String> {
             "On each surface and along each axis, the film percolates at all of its loads, or at none.".to_owned(),
         );
     }
-    let mean = brackets.iter().map(|[low, high]| 0.5 * (low + high)).sum::<f64>() / brackets.len() as f64;
     let low = brackets.iter().map(|bracket| bracket[0]).fold(f64::INFINITY, f64::min);
     let high = brackets.iter().map(|bracket| bracket[1]).fold(0.0, f64::max);
     Some(format!(
-        "Percolation is lost at a contact area of {} %. This is the mean of {} areas, each for the flow along one axis of one surface; they are between {} and {} %.",
-        digits(100.0 * mean, 3),
-        brackets.len(),
+        "Percolation is lost between the rows with contact areas of {} and {} %, for {} of one axis of one surface.",
         digits(100.0 * low, 3),
-        digits(100.0 * high, 3)
+        digits(100.0 * high, 3),
+        count(brackets.len(), "flow")
     ))
 }
 
@@ -50,10 +48,7 @@ mod tests {
         let rows =
             vec![row(1, 0.3, [1.0, 2.0]), row(1, 0.5, [0.0, 0.0]), row(2, 0.5, [0.1, 0.0]), row(2, 0.4, [1.0, 1.0])];
         let text = note(rows).expect("flows");
-        assert!(
-            text.contains("of 41.7 %. This is the mean of 3 areas") && text.contains("between 30 and 50 %"),
-            "{text}"
-        );
+        assert!(text.contains("between the rows with contact areas of 30 and 50 %, for 3 flows"), "{text}");
         assert_eq!(note(Vec::new()), None);
         let never_lost = vec![row(1, 0.3, [1.0, 2.0]), row(2, 0.3, [0.0, 0.0])];
         assert!(note(never_lost).expect("flows").contains("On each surface and along each axis"));

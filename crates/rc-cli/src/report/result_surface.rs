@@ -159,7 +159,9 @@ fn sections(heights: &Field, result: &ResultFolder, shift: f64) -> Vec<BodySecti
         let contact = kept.iter().map(|&i| pressure.values()[i] > 0.0).collect();
         BodySection { axis, at: at * side, points: kept.iter().map(point).collect(), contact }
     };
-    lines.into_iter().map(section).collect()
+    // A profile has no section along y.
+    let n = if grid.ny() > 1 { 2 } else { 1 };
+    lines.into_iter().take(n).map(section).collect()
 }
 
 /// `value` with seven digits, which is finer than a picture and shorter in the page.

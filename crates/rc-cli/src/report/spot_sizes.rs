@@ -25,6 +25,8 @@ pub(super) struct SpotSizes {
     /// Ends of the bins (m). A diameter is that of a circle with the spot's area.
     diameters: Vec<f64>,
     counts: Vec<usize>,
+    /// What is counted, as the name of the axis.
+    size: &'static str,
     note: String,
 }
 
@@ -56,11 +58,14 @@ impl SpotSizes {
     /// They are on `grid` in a cell of side `side` along x (m). `None` without contact.
     pub(super) fn of(spots: &[ContactSpot], grid: Grid, side: f64) -> Option<Self> {
         let (largest, smallest) = (spots.first()?, spots.last()?);
-        let element = (grid.len() as f64).recip();
+        let (element, is_line) = ((grid.len() as f64).recip(), grid.ny() == 1);
         // The located area of a spot of one element may be too small for a diameter.
         let area = |spot: &ContactSpot| spot.area_fraction.max(SMALLEST_SPOT * element);
         let root_of_cell = side * grid.cell_ratio().sqrt();
-        let diameter = |spot: &ContactSpot| 2.0 * root_of_cell * (area(spot) / PI).sqrt();
+        // A contact of a profile is a strip, of the whole depth.
+        let across = |area: f64| if is_line { side * area } else { 2.0 * root_of_cell * (area / PI).sqrt() };
+        let diameter = |spot: &ContactSpot| across(area(spot));
+        let width = if is_line { side * element } else { root_of_cell * element.sqrt() };
         // The smallest spot is in the middle of the first bin.
         let low = diameter(smallest) / 10_f64.powf(0.5 / BINS_PER_DECADE);
         let bin = |spot: &ContactSpot| ((diameter(spot) / low).log10() * BINS_PER_DECADE) as usize;
@@ -69,13 +74,14 @@ impl SpotSizes {
             counts[bin(spot)] += 1;
         }
         Some(Self {
-            rows: rows(spots, diameter),
+            rows: rows(spots, if is_line { "wide" } else { "across" }, diameter),
             diameters: (0..=counts.len()).map(|k| low * 10_f64.powf(k as f64 / BINS_PER_DECADE)).collect(),
             counts,
+            size: if is_line { "width of a contact" } else { "diameter of a circle of the same area" },
             note: format!(
                 "Spots are connected across edges of elements, and across the sides of a periodic cell. Their edges are located within \
                  elements. Spots narrower than an element, {}, are not resolved, so the number of small spots depends on the grid.",
-                engineering(root_of_cell * element.sqrt(), "m")
+                engineering(width, "m")
             ),
         })
     }
@@ -84,9 +90,9 @@ impl SpotSizes {
 /// The numbers below the histogram.
 ///
 /// There must be at least one spot, and the largest is the first.
-fn rows(spots: &[ContactSpot], diameter: impl Fn(&ContactSpot) -> f64) -> Vec<(&'static str, String)> {
+fn rows(spots: &[ContactSpot], word: &str, diameter: impl Fn(&ContactSpot) -> f64) -> Vec<(&'static str, String)> {
     let percent = |part: f64| format!("{} %", digits(100.0 * part, 3));
-    let across = |spot: &ContactSpot| format!("{} across", engineering(diameter(spot), "m"));
+    let across = |spot: &ContactSpot| format!("{} {word}", engineering(diameter(spot), "m"));
     let area: f64 = spots.iter().map(|spot| spot.area_fraction).sum();
     let load: f64 = spots.iter().map(|spot| spot.mean_pressure).sum();
     let largest = spots[0];
@@ -122,5 +128,9 @@ mod tests {
             assert_eq!(sizes.counts[bin], 1, "{area} elements: {sizes:?}");
         }
         assert!(SpotSizes::of(&[], grid, 1.0).is_none());
+        let line = Grid::new(100, 1).expect("a row");
+        let widths =
+            SpotSizes::of(&[ContactSpot { area_fraction: 0.05, ..spot(5, 5.0) }], line, 1e-3).expect("contact");
+        assert!(widths.rows[3].1.starts_with("50 µm wide") && widths.note.contains(", 10 µm, are not"), "{widths:?}");
     }
 }

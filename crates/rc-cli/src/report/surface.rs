@@ -4,6 +4,7 @@ use std::path::Path;
 
 use rc_core::quantity::{digits, engineering};
 use rc_core::{Field, Grid};
+use rc_heights::ProfileParameters;
 use rc_plot::{Palette, range_of_most};
 use serde::Serialize;
 
@@ -30,8 +31,10 @@ pub(super) struct SurfaceBody {
     /// The lowest height (m).
     lowest: f64,
     note: String,
-    /// Whether only a quarter is measured, and the rest is its mirror images.
+    /// Whether only a quarter (half of a profile) is measured, and the rest is its mirror images.
     mirrored: bool,
+    /// Whether the surface is a profile, of one row.
+    line: bool,
     /// Wavenumber (rad/m) and spectrum C (m⁴).
     spectrum: Vec<(f64, f64)>,
     /// Ends of the power law in the spectrum, if there is one, and its Hurst exponent.
@@ -56,7 +59,10 @@ pub(super) fn page(path: &Path, quiet: bool) -> Result<Page<SurfaceBody>, CliErr
     let command = format!("rc solve {} --e-star ... --pressure ... --out result", quoted(&path.display().to_string()));
     Ok(Page {
         title: "Surface".to_owned(),
-        subtitle: format!("{} x {} points, nothing presses on it", record.grid[0], record.grid[1]),
+        subtitle: match record.grid {
+            [nx, 1] => format!("a profile of {nx} points, nothing presses on it"),
+            [nx, ny] => format!("{nx} x {ny} points, nothing presses on it"),
+        },
         status: "surface".to_owned(),
         good: true,
         warnings: record.warnings.iter().map(|warning| warning.text.clone()).collect(),
@@ -78,6 +84,7 @@ impl SurfaceBody {
     pub(super) fn of(heights: &Field, record: &SurfaceRecord) -> Self {
         let lowest = heights.min();
         let pixels = pixel_means(heights.grid(), |i| (heights.values()[i] - lowest) * record.cell);
+        let is_line = heights.grid().ny() == 1;
         let mirrored = record.source.as_ref().is_some_and(is_mirrored);
         Self {
             sides: [record.cell, record.cell_y],
@@ -86,15 +93,27 @@ impl SurfaceBody {
             lowest: lowest * record.cell,
             note: note(heights.grid(), pixels.grid(), mirrored) + &of_fewer(heights.grid(), record.grid),
             mirrored,
+            line: is_line,
             spectrum: spectrum(record),
             law: law(record),
             distribution: record.distribution.bins().collect(),
             material_ratio: record.areal.curve.clone(),
             core: record.areal.equivalent_line(),
             lines: record.source.iter().map(source).chain(surface_lines(record)).collect(),
-            parameters: parameter_lines(record),
+            parameters: if is_line { profile_lines(heights, record.cell) } else { parameter_lines(record) },
         }
     }
+}
+
+/// Names and values of the parameters of the profile `heights` (in λ), as `rc inspect` of a profile has them.
+fn profile_lines(heights: &Field, side: f64) -> Vec<(&'static str, String)> {
+    let ProfileParameters { a, q, sk, ku, p, v, z, .. } = ProfileParameters::of(heights.values());
+    let [a, q, p, v, z] = [a, q, p, v, z].map(|length| engineering(length * side, "m"));
+    vec![
+        ("Pa, Pq", format!("{a}, {q}")),
+        ("Psk, Pku", format!("{}, {}", digits(sk, 3), digits(ku, 4))),
+        ("Pp, Pv, Pz", format!("{p}, {v}, {z}")),
+    ]
 }
 
 /// Whether the map was made periodic by its mirror images, with nothing that moves them since.
@@ -107,13 +126,21 @@ fn is_mirrored(source: &MapOrigin) -> bool {
 
 /// What the map shows.
 fn note(grid: Grid, pixels: Grid, mirrored: bool) -> String {
-    let pixel = if pixels == grid {
-        "Every point is a pixel.".to_owned()
-    } else {
-        format!("The map has at most {MOST_PIXELS} x {MOST_PIXELS} pixels. Each pixel is a mean of the {grid} points.")
+    let is_line = grid.ny() == 1;
+    let pixel = match (pixels == grid, is_line) {
+        (true, true) => "The curve has every point.".to_owned(),
+        (true, false) => "Every point is a pixel.".to_owned(),
+        (false, true) => format!("The curve has {} points, each a mean of the {} points.", pixels.nx(), grid.nx()),
+        (false, false) => format!(
+            "The map has at most {MOST_PIXELS} x {MOST_PIXELS} pixels. Each pixel is a mean of the {grid} points."
+        ),
     };
-    let quarter = "The map shows the measured quarter of the cell. The rest is its mirror images (periodic mirror). ";
-    if mirrored { quarter.to_owned() + &pixel } else { pixel }
+    let measured = if is_line {
+        "The measured half is shown. The rest is its mirror image (periodic mirror). "
+    } else {
+        "The map shows the measured quarter of the cell. The rest is its mirror images (periodic mirror). "
+    };
+    if mirrored { measured.to_owned() + &pixel } else { pixel }
 }
 
 /// A note about statistics from fewer points than the map's.
@@ -121,7 +148,8 @@ fn of_fewer(grid: Grid, points: [usize; 2]) -> String {
     if [grid.nx(), grid.ny()] == points {
         return String::new();
     }
-    format!(" The statistics are of {} x {} points, except the exact rms height and slope.", points[0], points[1])
+    let number = if points[1] == 1 { points[0].to_string() } else { format!("{} x {}", points[0], points[1]) };
+    format!(" The statistics are of {number} points, except the exact rms height and slope.")
 }
 
 /// The line about the file of the map.

@@ -66,6 +66,10 @@ impl<'a> Part<'a> {
     fn of(scene: &'a [Value]) -> Option<Self> {
         let mut varied: Vec<_> = varied_of(&scene[0]).into_iter().map(|(key, _)| (key, Vec::new())).collect();
         let names: Vec<&str> = varied.iter().map(|(key, _)| *key).collect();
+        // Each time has a load, and its material is not among the keys.
+        if names.contains(&"time") {
+            return None;
+        }
         let keys = keys_without(&scene[0], &names);
         for surface in scene {
             // A force is a load.

@@ -6,12 +6,10 @@ use std::time::{Duration, Instant};
 
 use rc_core::Snapshot;
 
+use crate::files::names::WATCH_FILE;
 use crate::terminal;
 use rc_plot::{ContactRows, save_png};
 use rc_sweep::files::{self, FileError};
-
-/// The picture in the folder of the result. `contact.png` may belong to an earlier result, so it has another name.
-const PICTURE: &str = "watch.png";
 
 /// Minimum time from one picture to the next.
 const INTERVAL: Duration = Duration::from_secs(1);
@@ -47,7 +45,7 @@ enum State {
 impl Watch {
     /// A picture in `folder`, for E* in Pa and the cell's side in m.
     pub(crate) fn new(folder: &Path, e_star: f64, side: f64) -> Self {
-        Self { path: folder.join(PICTURE), e_star, side, interval: INTERVAL, state: Mutex::new(State::First) }
+        Self { path: folder.join(WATCH_FILE), e_star, side, interval: INTERVAL, state: Mutex::new(State::First) }
     }
 
     /// Draws the pressure, if it is time.

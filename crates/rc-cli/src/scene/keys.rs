@@ -13,8 +13,9 @@ use rc_sweep::memory::ByteSize;
 use serde::{Deserialize, Serialize};
 
 use super::form::FormName;
+use super::material::{FractionalSpec, PronySpec};
 use super::names::{amplitudes, boundaries, methods, truncations};
-use super::quantity::{angle, force, length, pressure, viscosity};
+use super::quantity::{angle, force, length, pressure, speed, time, viscosity};
 use super::time_limit::TimeLimit;
 use super::values::{
     Conductivity, FilePrecision, Fraction, GridSpec, HeightsLike, Marks, PsdConvention, ToleranceSpec,
@@ -78,7 +79,9 @@ pub struct SurfaceKeys {
     #[arg(long, value_name = "NAME", help_heading = help::FILES, hide_possible_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub heights_like: Option<HeightsLike>,
-    /// Unit of a file that names none: m, cm, mm, um, nm, angstrom, pm [default: m]
+    /// Unit of a file that names none: m, cm, mm, um, nm, pm [default: m]
+    ///
+    /// Or angstrom.
     #[arg(long, value_name = "UNIT", help_heading = help::FILES)]
     pub unit: Option<LengthUnit>,
     /// Unit of heights, where it differs from --unit
@@ -133,7 +136,7 @@ pub struct SurfaceKeys {
     #[arg(long, value_name = "N", help_heading = help::RANDOM, allow_hyphen_values = true)]
     pub roll_off: Option<f64>,
     /// No waves below this number of waves per cell [default: 1]
-    #[arg(long, value_name = "N", help_heading = help::RANDOM, allow_hyphen_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "N", help_heading = help::RANDOM, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub low_cut: Option<f64>,
     /// fixed: those of the spectrum (Eq. 14); random: Gaussian [default: fixed]
@@ -222,6 +225,38 @@ pub struct ContactKeys {
     #[arg(long, value_name = "PA", help_heading = help::PHYSICS, value_parser = pressure::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "pressure::read", skip_serializing_if = "Option::is_none")]
     pub hardness: Option<f64>,
+    /// Speed (m/s) of sliding over a solid that relaxes: adds friction
+    ///
+    /// Steady sliding along +x, or along --direction. The moduli of the solid are the relaxed ones.
+    #[arg(long, value_name = "M/S", help_heading = help::PHYSICS, value_parser = speed::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "speed::read", skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
+    /// Direction of the speed (degrees): 0 is along +x, 90 along +y [default: 0]
+    #[arg(long, value_name = "DEG", help_heading = help::PHYSICS, hide_short_help = true, value_parser = angle::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "angle::read", skip_serializing_if = "Option::is_none")]
+    pub direction: Option<f64>,
+    /// Solid that relaxes: lines g tau (relative to the modulus; s)
+    ///
+    /// A Prony series, E(t) = E (1 + sum g exp(-t/tau)). Under the title E, moduli are in Pa; titles may give other
+    /// units, such as E (MPa).
+    #[arg(long, value_name = "FILE", help_heading = help::PHYSICS)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub prony: Option<PronySpec>,
+    /// Instead of --prony: ratio of the glassy to the relaxed modulus
+    #[arg(long, value_name = "RATIO", help_heading = help::PHYSICS, hide_short_help = true, allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub glassy_ratio: Option<f64>,
+    /// Relaxation time (s), with --glassy-ratio
+    #[arg(long, value_name = "S", help_heading = help::PHYSICS, hide_short_help = true, value_parser = time::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "time::read", skip_serializing_if = "Option::is_none")]
+    pub relaxation_time: Option<f64>,
+    /// Instead of --prony: a fractional Zener solid, such as 0.2,10,1e-3
+    ///
+    /// Exponent alpha, ratio of the glassy to the relaxed modulus, relaxation time (s). In scenes also
+    /// { alpha = 0.2, glassy_ratio = 10, tau = 1e-3 }.
+    #[arg(long, value_name = "ALPHA,RATIO,S", help_heading = help::PHYSICS, hide_short_help = true, allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fractional: Option<FractionalSpec>,
     /// Conductivities of both bodies, such as 400,50: adds the conductance
     ///
     /// Electrical (S/m) or thermal (W/(m K)). One value stands for both bodies.
@@ -245,7 +280,7 @@ pub struct ContactKeys {
     #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
     pub layer_thickness: Option<f64>,
     /// Poisson's ratio of the layer [default: --poisson]
-    #[arg(long, value_name = "NU", help_heading = help::PHYSICS, allow_hyphen_values = true)]
+    #[arg(long, hide_short_help = true, value_name = "NU", help_heading = help::PHYSICS, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layer_poisson: Option<f64>,
     /// adaptive, uniform or gauss-seidel [default: cheaper of the first two]
@@ -414,7 +449,8 @@ impl Scene {
     #[must_use]
     pub fn relative_to(mut self, folder: &Path) -> Self {
         let SurfaceKeys { heights, spectrum, psd, like, add, .. } = &mut self.surface;
-        for path in [heights, spectrum, psd, like, add, &mut self.run.out].into_iter().flatten() {
+        let prony = self.contact.prony.as_mut().and_then(PronySpec::path);
+        for path in [heights, spectrum, psd, like, add, &mut self.run.out].into_iter().flatten().chain(prony) {
             *path = folder.join(&*path);
         }
         self

@@ -61,7 +61,9 @@ impl OtherBody {
         {
             row.iter_mut().zip(other.iter().rev()).for_each(|(height, other)| *height += other);
         }
-        let doubts = warnings::surface::of_map(&self.map).into_iter().chain(warnings::surface::of_record(&self.path));
+        let doubts = warnings::surface::of_file(&self.path, &self.map)
+            .into_iter()
+            .chain(warnings::surface::of_record(&self.path));
         Ok(doubts.map(|doubt| Warning::new(doubt.code, format!("add: {}", doubt.text))).collect())
     }
 

@@ -6,31 +6,68 @@ use rc_core::Dimension;
 use rc_sweep::Loads;
 use serde::de::{Deserializer, Error, Visitor};
 
-/// The readers of keys of one dimension, for clap and for serde.
+/// The quantity of a key.
+#[derive(Clone, Copy)]
+enum Quantity {
+    Of(Dimension),
+    /// A speed (m/s), which is a length per second.
+    Speed,
+    /// A time (s). Its decimal prefixes are those of lengths.
+    Time,
+}
+
+/// The readers of keys of one quantity, for clap and for serde.
 macro_rules! readers {
-    ($name:ident, $dimension:expr) => {
+    ($name:ident, $quantity:expr) => {
         pub(crate) mod $name {
-            use rc_core::Dimension;
             use serde::Deserializer;
+
+            use super::Quantity;
 
             /// Reads a value of the command line.
             pub(crate) fn parse(text: &str) -> Result<f64, String> {
-                Dimension::parse($dimension, text)
+                Quantity::parse($quantity, text)
             }
 
             /// Reads a value of a scene file: a number, or text with a unit.
             pub(crate) fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-                super::read($dimension, deserializer).map(Some)
+                super::read($quantity, deserializer).map(Some)
             }
         }
     };
 }
 
-readers!(length, Dimension::Length);
-readers!(pressure, Dimension::Pressure);
-readers!(force, Dimension::Force);
-readers!(angle, Dimension::Angle);
-readers!(viscosity, Dimension::Viscosity);
+readers!(length, Quantity::Of(rc_core::Dimension::Length));
+readers!(pressure, Quantity::Of(rc_core::Dimension::Pressure));
+readers!(force, Quantity::Of(rc_core::Dimension::Force));
+readers!(angle, Quantity::Of(rc_core::Dimension::Angle));
+readers!(viscosity, Quantity::Of(rc_core::Dimension::Viscosity));
+readers!(speed, Quantity::Speed);
+readers!(time, Quantity::Time);
+
+impl Quantity {
+    /// Reads a number, with or without a unit, in SI units (an angle in degrees).
+    fn parse(self, text: &str) -> Result<f64, String> {
+        let text = text.trim();
+        let in_metres = |text: String| Dimension::Length.parse(&text).ok();
+        let read = match self {
+            Self::Of(dimension) => return dimension.parse(text),
+            Self::Speed => text.parse().ok().or_else(|| in_metres(text.strip_suffix("/s")?.to_owned())),
+            Self::Time => text.parse().ok().or_else(|| in_metres(format!("{}m", text.strip_suffix('s')?))),
+        };
+        read.ok_or_else(|| format!("must be {self}, not '{text}'"))
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Of(dimension) => dimension.fmt(f),
+            Self::Speed => f.write_str("a speed in m/s, such as 0.1 or \"1mm/s\""),
+            Self::Time => f.write_str("a time in s, such as 1e-3 or \"1ms\""),
+        }
+    }
+}
 
 /// Reads mean pressures of the command line.
 pub(crate) fn pressures(text: &str) -> Result<Loads, String> {
@@ -42,11 +79,29 @@ pub(crate) fn penetrations(text: &str) -> Result<Loads, String> {
     Loads::with_units(text, Dimension::Length)
 }
 
-fn read<'de, D: Deserializer<'de>>(dimension: Dimension, deserializer: D) -> Result<f64, D::Error> {
-    deserializer.deserialize_any(NumberWithUnit(dimension))
+/// Reads times of the command line.
+pub(crate) fn times(text: &str) -> Result<Loads, String> {
+    // The ends of a range, or all values.
+    let n_times = if text.contains(':') { 2 } else { usize::MAX };
+    let is_separator = |c: char| c == ':' || c == ',';
+    let number = |(i, part): (usize, &str)| {
+        if i >= n_times {
+            return Ok(part.to_owned());
+        }
+        let time = Quantity::Time.parse(part.trim_end_matches(is_separator))?;
+        if !(time > 0.0 && time.is_finite()) {
+            return Err(format!("each time must be above 0 and finite (s), not {time}"));
+        }
+        Ok(format!("{time}{}", &part[part.trim_end_matches(is_separator).len()..]))
+    };
+    text.split_inclusive(is_separator).enumerate().map(number).collect::<Result<String, String>>()?.parse()
 }
 
-struct NumberWithUnit(Dimension);
+fn read<'de, D: Deserializer<'de>>(quantity: Quantity, deserializer: D) -> Result<f64, D::Error> {
+    deserializer.deserialize_any(NumberWithUnit(quantity))
+}
+
+struct NumberWithUnit(Quantity);
 
 impl Visitor<'_> for NumberWithUnit {
     type Value = f64;

@@ -329,7 +329,7 @@ impl SurfaceSetup {
         heights::check_heights(path, &map.heights, &self.keys.read_params())?;
         let mut warnings = Vec::new();
         if matches!(self.source, Source::File { .. }) {
-            warnings.extend(warnings::surface::of_map(&map));
+            warnings.extend(warnings::surface::of_file(path, &map));
         }
         warnings.extend(warnings::surface::assumed(&self.assumed));
         let notes = map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();

@@ -10,10 +10,7 @@ use rc_heights::{LengthUnit, Scales, pairs};
 
 use super::keys::SurfaceKeys;
 use crate::error::CliError;
-use crate::files::names::PSD_FILE;
-
-/// Name of a file of coefficients in a result folder.
-pub(crate) const WAVES_FILE: &str = "spectrum.txt";
+use crate::files::names::{PSD_FILE, WAVES_FILE};
 
 /// The content of a file and its surface.
 ///

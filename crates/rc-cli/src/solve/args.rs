@@ -32,7 +32,7 @@ Give --pressure, --penetration or --force, exactly one. Numbers may have units, 
 A height map has no default material: give --e-star, or --young and --poisson. If its file has no size, give --cell too.
 
 DIR receives summary.json, pressure.npy (Pa), gap.npy (m), contact.png and scene.toml.
-Manual pages with longer texts: rc man --out man";
+Longer texts, and rare flags such as --poisson2, --radius, --viscosity, --pressure-drop: rc man --out man";
 
 const SOLVE_MANUAL: &str = "\
 Where neither scene file nor flags give a value, that of the paper's surface is taken: cell 0.01 m, E = 0.4 GPa, ν = 0.45, N = 64, H = 0.8, \

@@ -4,13 +4,15 @@ use std::time::Instant;
 
 use rc_comm::Ranks;
 use rc_sweep::memory::Budget;
-use rc_sweep::{Summary, Warning, files};
+use rc_sweep::{Summary, Warning};
 
 use super::checked::CheckedScene;
-use super::dry_run;
 use super::solved::Solved;
+use super::{dry_run, sliding_note};
 use crate::error::CliError;
-use crate::export::{xarray, zarr};
+use crate::export::zarr;
+use crate::files::kind::Kind;
+use crate::files::names::GROUP;
 use crate::run::progress::Progress;
 use crate::run::stop::{Reason, Stop};
 use crate::run::threads;
@@ -74,7 +76,7 @@ impl Job {
         if self.scene.contact.keys.output_grid.is_some() {
             return Err(CliError::input("output_grid: the group of --zarr has the whole grid; omit one of the two"));
         }
-        zarr::check_place(&folder.join(xarray::GROUP))?;
+        zarr::check_place(&folder.join(GROUP))?;
         Ok(Self { zarr: true, ..self })
     }
 
@@ -90,7 +92,7 @@ impl Job {
     pub(super) fn execute(&self) -> Result<(), CliError> {
         let ranks = self.ranks();
         if let Some(folder) = &self.run.out {
-            let checked = if ranks.rank() == 0 { files::check_folder(folder).map_err(Into::into) } else { Ok(()) };
+            let checked = if ranks.rank() == 0 { Kind::Result.check_out(folder) } else { Ok(()) };
             together(ranks, checked)?;
         }
         let progress = self.progress();
@@ -173,6 +175,9 @@ impl Job {
                 let text = text::solved(summary, units.cell().sides(), units.elasticity().e_star());
                 let is_lost = self.scene.contact.keys.elements && !has_elements;
                 let note = if is_lost { NO_ELEMENTS } else { "" };
+                if let Some(note) = sliding_note::of(summary, &self.scene.contact) {
+                    terminal::tell(&note);
+                }
                 terminal::print(&(text + note + &text::written(self.run.out.as_deref())))
             }
         }

@@ -14,6 +14,7 @@ mod messages;
 mod over_ranks;
 mod result_files;
 mod shared_fields;
+mod sliding_note;
 
 pub use checked::CheckedScene;
 pub use failure::Failure;

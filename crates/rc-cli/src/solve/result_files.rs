@@ -16,10 +16,8 @@ use super::leakage::SolvedFlow;
 use super::map_file::MapFile;
 use super::{flow_files, shared_fields};
 use crate::error::CliError;
-use crate::export::xarray;
-use crate::files::names::SUMMARY_FILE;
-use crate::files::names::{HEIGHTS_FILE, SCENE_FILE};
-use crate::files::result::PLASTIC_GAP_FILE;
+use crate::files::kind::Kind;
+use crate::files::names::{GROUP, HEIGHTS_FILE, PLASTIC_GAP_FILE, SCENE_FILE, SUMMARY_FILE};
 use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
@@ -83,6 +81,7 @@ impl ResultFiles<'_> {
             wall,
             threads,
             conductivity: self.contact.keys.conductivity.map(Conductivity::mean),
+            slides: self.contact.sliding.is_some(),
         };
         let leakage = self.flow.map(|flow| flow.summary.clone());
         let summary = Summary::of(self.solution, self.contact.units, &context);
@@ -130,8 +129,8 @@ impl ResultFiles<'_> {
         if self.solution.ranks().rank() > 0 {
             return shared_fields::write(None, self.solution, units);
         }
-        let mut staged = Staged::new(folder)?;
-        staged.add(xarray::GROUP, |path| shared_fields::write(Some(path), self.solution, units))?;
+        let mut staged = Kind::Result.stage(folder)?;
+        staged.add(GROUP, |path| shared_fields::write(Some(path), self.solution, units))?;
         Ok(self.finish(staged, summary)?)
     }
 
@@ -142,7 +141,7 @@ impl ResultFiles<'_> {
     }
 
     fn stage(&self, folder: &Path, summary: &Summary) -> Result<(), FileError> {
-        let mut staged = Staged::new(folder)?;
+        let mut staged = Kind::Result.stage(folder)?;
         add_fields(&mut staged, self.contact, self.solution)?;
         if let Some(flow) = self.flow {
             flow_files::add(&mut staged, self.contact, flow, self.solution)?;

@@ -10,6 +10,7 @@ use rc_solver::Solution;
 
 use crate::error::CliError;
 use crate::export::{xarray, zarr};
+use crate::files::names::GROUP;
 use crate::run::together::together;
 
 /// Rows of a chunk, which are those of a tile. A chunk has all columns.
@@ -45,7 +46,7 @@ pub(super) fn write(path: Option<&Path>, solution: &Solution<'_>, units: Units) 
 }
 
 fn not_written(path: Option<&Path>, cause: &io::Error) -> CliError {
-    CliError::write(path.unwrap_or(Path::new(crate::export::xarray::GROUP)), cause)
+    CliError::write(path.unwrap_or(Path::new(GROUP)), cause)
 }
 
 /// The path of the first rank.

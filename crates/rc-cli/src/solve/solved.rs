@@ -164,8 +164,9 @@ impl<'a> ProblemSetup<'a> {
 
     /// Checks that depend on the grid of the surface.
     fn check_grid(&self) -> Result<(), CliError> {
-        let ContactSetup { layer, kernel, units, .. } = self.contact;
+        let ContactSetup { layer, kernel, units, sliding, .. } = self.contact;
         resolve::check_thickness(*layer, *kernel, self.surface.grid, units.cell().side())?;
+        sliding.as_ref().map_or(Ok(()), |sliding| sliding.check_on(self.surface.grid))?;
         if self.contact.keys.leakage && self.contact.boundary == Boundary::Free {
             rc_leakage::images(self.surface.grid).map_err(|cause| CliError::input(format_args!("leakage: {cause}")))?;
         }

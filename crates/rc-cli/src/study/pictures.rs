@@ -33,15 +33,15 @@ pub(super) fn write(
     solution: &Solution<'_>,
 ) -> Result<(), CliError> {
     let grid = solution.grid();
-    let (mut means, mut in_contact) = (PixelMean::new(grid, MOST_PIXELS), 0_usize);
+    let mut means = PixelMean::new(grid, MOST_PIXELS);
     let Ok(()) = solution.pressure_rows(|_, rows| {
         for row in rows.chunks_exact(grid.nx()) {
             means.take(|ix| if row[ix] > 0.0 { 1.0 } else { 0.0 });
-            in_contact += row.iter().filter(|pressure| **pressure > 0.0).count();
         }
         Ok::<_, Infallible>(())
     });
-    let part = digits(100.0 * in_contact as f64 / grid.len() as f64, 3);
+    // The located area, as in the table. The picture shows whole elements.
+    let part = digits(100.0 * solution.observables().area.fraction, 3);
     let title = format!("{treatment}: {part} % at {}", engineering(pressure, "Pa"));
     let field = means.finish();
     let picture = MapPicture(Map { title: &title, field: &field, shade: Shade::PartOfContact, side });

@@ -7,10 +7,10 @@ use serde_json::Value;
 use super::rows::TREATMENT;
 
 /// Results that belong to the whole half-space under a patch, so that a patch and a periodic cell do not compare.
-const OF_HALF_SPACE: [&str; 3] = ["penetration", "contact_stiffness", "contact_conductance"];
+const OF_HALF_SPACE: [&str; 4] = ["penetration", "contact_stiffness", "contact_conductance", "conductance"];
 
 /// Results that do not depend on the size of the map: key, unit, and key of the error of the mesh.
-const RESULTS: [(&str, &str, Option<&str>); 10] = [
+const RESULTS: [(&str, &str, Option<&str>); 11] = [
     ("area_fraction", "", Some("area_fraction_error")),
     ("penetration", "m", Some("penetration_error_bar")),
     ("mean_gap", "m", Some("mean_gap_error")),
@@ -18,6 +18,7 @@ const RESULTS: [(&str, &str, Option<&str>); 10] = [
     ("max_pressure", "Pa", None),
     ("contact_stiffness", "Pa/m", None),
     ("contact_conductance", "1/m", Some("contact_conductance_error")),
+    ("conductance", "W/(m² K) or S/m²", Some("conductance_error")),
     ("plastic_area_fraction", "", Some("plastic_area_fraction_error")),
     ("permeance_x", "m³", Some("permeance_error_x")),
     ("permeance_y", "m³", Some("permeance_error_y")),

@@ -11,9 +11,7 @@ use super::ranges::{LoadRanges, Range};
 use super::rows::{SAME_AS, STEP, TREATMENT};
 use super::variants::Variant;
 use crate::error::CliError;
-
-/// File of the record in the folder of a study.
-pub(crate) const STUDY_FILE: &str = "study.json";
+use crate::files::names::STUDY_FILE;
 
 /// A study with all its rows.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -71,7 +69,7 @@ pub(super) fn lines(rows: &SweepRows) -> SweepRows {
 
 /// Whether a prefix before the unit means what it says. It would belong to the metre, and not to its power.
 pub(crate) fn takes_prefix(unit: &str) -> bool {
-    !["1/m", "m³"].contains(&unit)
+    !["1/m", "m³", "m³/s", "W/(m² K) or S/m²"].contains(&unit)
 }
 
 /// `value` in the words of a table.

@@ -15,12 +15,14 @@ use serde_json::json;
 use super::args::StudyArgs;
 use super::distinct::{Common, Distinct};
 use super::ranges;
-use super::record::{STUDY_FILE, StudyRecord, TreatmentOf, lines};
+use super::record::{StudyRecord, TreatmentOf, lines};
 use super::rows::{Pictures, SAME_AS, STEP, StudyRows, TREATMENT};
 use super::variants::Base;
 use crate::error::CliError;
+use crate::files::kind::Kind;
+use crate::files::names::{PAGE_FILE, STUDY_FILE};
 use crate::prepare::args::{after_crops, check_filled, treatments};
-use crate::report::{self, PAGE_FILE};
+use crate::report;
 use crate::run::threads;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene};
 use crate::scene::{origin, resolve, written};
@@ -133,7 +135,7 @@ pub(super) fn run(args: StudyArgs, stop: Option<&dyn Observer>) -> Result<Solved
     resolve::check_size_and_material(&scene.surface, &scene.contact)?;
     let n_threads = threads::start(run.threads)?;
     let folder = run.out.clone().unwrap_or_else(|| PathBuf::from("."));
-    files::check_folder(&folder)?;
+    Kind::Study.check_out(&folder)?;
     let resume = args.resume;
     let study = Arc::new(Study::new(args, scene)?);
     let plan = study.rows.plan(&study.pressures)?;
@@ -252,9 +254,7 @@ fn command(args: &StudyArgs) -> String {
 
 /// Refuses a map that was made periodic before, which would be mirrored or faded twice.
 fn check_once(path: &Path, source: &MapOrigin) -> Result<(), CliError> {
-    let is_periodic =
-        |step: &&String| ["periodic mirror", "periodic window", "repeat"].iter().any(|start| step.starts_with(start));
-    let Some(step) = source.treatments.iter().find(is_periodic) else { return Ok(()) };
+    let Some(step) = source.periodic_step() else { return Ok(()) };
     Err(CliError::in_file(
         path,
         format_args!(

@@ -18,6 +18,7 @@ use self::args::SurfaceArgs;
 use self::surface_files::{is_map, stage_folder, write_map};
 use self::treated::Prepared;
 use crate::error::CliError;
+use crate::files::kind::Kind;
 use crate::inspect::text::heights as lines;
 use crate::run::threads;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene, SurfaceKeys};
@@ -39,7 +40,11 @@ pub(crate) fn run(args: SurfaceArgs) -> Result<(), CliError> {
     threads::start(scene.run.threads)?;
     let budget = Budget::new(scene.run.memory_limit);
     if let Some(target) = scene.run.out.as_deref() {
-        files::check_folder(if is_map(target) { target.parent().unwrap_or(Path::new("")) } else { target })?;
+        if is_map(target) {
+            files::check_folder(target.parent().unwrap_or(Path::new("")))?;
+        } else {
+            Kind::Surface.check_out(target)?;
+        }
     }
     let prepared = if treatments.is_empty() {
         untreated(scene.surface, budget)?

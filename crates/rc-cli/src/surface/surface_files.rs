@@ -9,6 +9,7 @@ use rc_plot::{Map, MapPicture, Shade, save_png};
 use rc_sweep::files::{self, FileError, Staged};
 use rc_sweep::to_json;
 
+use crate::files::kind::Kind;
 use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SCENE_FILE};
 use crate::inspect::record::SurfaceRecord;
 use crate::scene::file;
@@ -86,7 +87,7 @@ pub(crate) fn stage_folder(
     );
     let shade = Shade::of_heights(heights, side);
     let picture = MapPicture(Map { title: "Height", field: heights, shade, side });
-    let mut staged = Staged::new(folder)?;
+    let mut staged = Kind::Surface.stage(folder)?;
     staged.add(HEIGHTS_FILE, |path| npy::write(path, &field, factor))?;
     if let Some(waves) = surface.wave_file() {
         staged.add(waves.name(), |path| waves.write(path))?;

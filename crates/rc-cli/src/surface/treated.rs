@@ -1,11 +1,11 @@
 //! Height maps from files, and their treatment.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use rc_core::{Grid, PeriodicCell};
 use rc_heights::{Crop, Effect, HeightMap, TreatError, Treatment};
 use rc_sweep::memory::Budget;
-use rc_sweep::{Warning, WarningCode};
+use rc_sweep::{MapOrigin, Warning, WarningCode};
 
 use crate::error::CliError;
 use crate::inspect::record::{SurfaceRecord, TreatmentRow};
@@ -68,7 +68,7 @@ pub(crate) fn read(keys: SurfaceKeys) -> Result<MapRead, CliError> {
     let mut map = heights::read(&path, &keys.read_params(), keys.scales())?;
     let given = [keys.cell, if keys.line { keys.cell } else { keys.cell_y }];
     let CellOfMap { cell, cell_y, assumed } = CellOfMap::of(&path, &map, given)?;
-    let mut warnings = doubts::of_map(&map);
+    let mut warnings = doubts::of_file(&path, &map);
     warnings.extend(doubts::assumed(&assumed));
     let notes = map.notes.iter().filter(|note| !note.is_assumption()).map(ToString::to_string).collect();
     map.sides = cell.map(|cell| [cell, cell_y.unwrap_or(cell)]);
@@ -88,8 +88,10 @@ pub(crate) fn treat(read: MapRead, treatments: &[Treatment], budget: Budget) -> 
         budget.check_grid(&format!("the map after {treatment}"), grid)?;
     }
     let mut effects = vec![Effect::of(&map, "as read")];
-    let (mut map, after) = rc_heights::apply(map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
     let mut origin = origin::of(&path, keys.channel.as_deref());
+    check_once(&path, &origin, treatments)?;
+    let mut warnings = despiked(warnings, &map, treatments);
+    let (mut map, after) = rc_heights::apply(map, treatments).map_err(|cause| CliError::in_file(&path, cause))?;
     origin.treatments.extend(after.iter().map(|effect| effect.treatment.clone()));
     effects.extend(after);
     if keys.line {
@@ -108,7 +110,6 @@ pub(crate) fn treat(read: MapRead, treatments: &[Treatment], budget: Budget) -> 
     let expected = expected.map(resolve::checked_grid).transpose()?;
     let setup = resolve::surface_in_cell(SurfaceKeys { cell, cell_y, grid: None, ..keys })?;
     let mut surface = setup.of_map(&path, map, expected)?;
-    let mut warnings = despiked(warnings, treatments, &surface.warnings);
     warnings.extend(filled(treatments, &effects));
     warnings.extend(lay);
     warnings.extend(doubts::of_record(&path));
@@ -142,24 +143,46 @@ fn of_profile(treatments: &[Treatment]) -> Result<Vec<Treatment>, CliError> {
 /// # Errors
 /// [`TreatError`].
 pub fn prepared(map: HeightMap, treatments: &[Treatment]) -> Result<(HeightMap, Vec<Warning>), TreatError> {
-    let warnings = doubts::of_map(&map);
+    let mut warnings = despiked(doubts::of_map(&map), &map, treatments);
     let mut effects = vec![Effect::of(&map, "as read")];
     let (map, after) = rc_heights::apply(map, treatments)?;
     effects.extend(after);
-    let mut warnings = despiked(warnings, treatments, &doubts::of_map(&map));
     warnings.extend(filled(treatments, &effects));
     warnings.extend(doubts::mirrored(&map, treatments));
     Ok((map, warnings))
 }
 
 /// The doubts about a map as read, in which despiking leaves only spikes that are doubts about the map after it too.
-fn despiked(read: Vec<Warning>, treatments: &[Treatment], after: &[Warning]) -> Vec<Warning> {
-    if !treatments.iter().any(|treatment| matches!(treatment, Treatment::Despike { .. })) {
+///
+/// A coarser map would have others, so that they are those before any resampling.
+fn despiked(read: Vec<Warning>, map: &HeightMap, treatments: &[Treatment]) -> Vec<Warning> {
+    let Some(at) = treatments.iter().position(|treatment| matches!(treatment, Treatment::Despike { .. })) else {
         return read;
-    }
+    };
+    let coarser = treatments[at..].iter().position(|treatment| matches!(treatment, Treatment::Resample(_)));
+    let end = coarser.map_or(treatments.len(), |resample| at + resample);
+    // What fails is told where all treatments are applied.
+    let after =
+        rc_heights::apply(map.clone(), &treatments[..end]).map_or_else(|_| Vec::new(), |(map, _)| doubts::of_map(&map));
     let is_spikes = |warning: &Warning| warning.code == WarningCode::Spikes;
     let others = read.into_iter().filter(|warning| !is_spikes(warning));
-    others.chain(after.iter().filter(|warning| is_spikes(warning)).cloned()).collect()
+    others.chain(after.into_iter().filter(is_spikes)).collect()
+}
+
+/// Refuses to make a map periodic that was made so before, and would be mirrored or faded twice.
+fn check_once(path: &Path, source: &MapOrigin, treatments: &[Treatment]) -> Result<(), CliError> {
+    if !treatments.iter().any(|treatment| matches!(treatment, Treatment::Periodic(_))) {
+        return Ok(());
+    }
+    let Some(step) = source.periodic_step() else { return Ok(()) };
+    Err(CliError::in_file(
+        path,
+        format_args!(
+            "is periodic already ({step}); give --no-periodic to rc prepare, omit --periodic, or give the file that was \
+             measured, {}",
+            source.file
+        ),
+    ))
 }
 
 /// A doubt about the points that a treatment has filled.

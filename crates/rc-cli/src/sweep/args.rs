@@ -9,7 +9,7 @@ use super::specs::{ListSpec, QUANTITIES, ShardSpec};
 use super::varied::Variation;
 use crate::error::CliError;
 use crate::scene::keys::Scene;
-use crate::scene::quantity::{penetrations, pressures};
+use crate::scene::quantity::{penetrations, pressures, times};
 use crate::scene::values::Fraction;
 
 /// Arguments of `rc sweep`.
@@ -17,6 +17,7 @@ use crate::scene::values::Fraction;
 #[command(after_help = SWEEP_HELP, after_long_help = SWEEP_MANUAL, args_conflicts_with_subcommands = true)]
 #[command(mut_arg("out", |out| out.help("Folder for the rows and the table; must be given")))]
 #[command(mut_arg("area_error", |refused| refused.hide(true)))]
+#[command(mut_arg("speed", |one| one.hide_short_help(true)))]
 pub(crate) struct SweepArgs {
     /// What else there is to do with sweeps.
     #[command(subcommand)]
@@ -42,6 +43,17 @@ pub(crate) struct SweepArgs {
     /// a range, such as layer-thickness=1e-5:1e-3:8.
     #[arg(long, value_name = "KEY=LIST", help_heading = "Sweep")]
     pub(crate) vary: Vec<Variation>,
+    /// Speeds (m/s) of a surface that slides, in the same forms: 1e-6:1e1:20
+    ///
+    /// Short for --vary speed=LIST. A list with commas may begin with 0, the contact at rest.
+    #[arg(long, value_name = "LIST", help_heading = "Sweep", value_parser = Variation::speeds, allow_hyphen_values = true)]
+    pub(crate) speeds: Option<Variation>,
+    /// Times (s) of creep under a constant load, in the same forms: 1e-3:1e3:7
+    ///
+    /// The solid is that of --prony, or --glassy-ratio and --relaxation-time, and nothing slides. Contact area, gap,
+    /// penetration and leakage are those of the elastic contact under the load control_value.
+    #[arg(long, value_name = "LIST", help_heading = "Sweep", value_parser = times, allow_hyphen_values = true)]
+    pub(crate) times: Option<Loads>,
     /// Keep a result folder for each row: rows/0001 and so on
     #[arg(long, help_heading = "Sweep")]
     pub(crate) fields: bool,
@@ -115,7 +127,7 @@ pub(crate) struct MergeArgs {
 }
 
 const SWEEP_HELP: &str = "\
-DIR receives sweep.csv, a line for each solve. Without lists, each scene is solved for its own load and seed.
+DIR receives sweep.csv, a line for each solve. Without lists, a scene has its own load and seed.
 Manual pages with longer texts: rc man --out man";
 
 const SWEEP_MANUAL: &str = "\

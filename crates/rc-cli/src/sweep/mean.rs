@@ -21,6 +21,7 @@ use super::realisations::{MeanResults, Realisations};
 use super::results::Results;
 use super::surfaces::{Surfaces, SweptSurface};
 use crate::error::CliError;
+use crate::files::kind::Kind;
 use crate::scene::surface::Source;
 use crate::{terminal, text};
 
@@ -42,6 +43,9 @@ pub(super) fn run(args: &SweepArgs, wanted: &WantedMean) -> Result<(), CliError>
     let folder = run.out.clone().ok_or_else(missing)?;
     let (surface, control) = (surfaces.only()?, surfaces.control());
     let plan = plan(surface, control)?;
+    if !args.resume {
+        Kind::Sweep.check_out(&folder)?;
+    }
     refuse_early(&surfaces)?;
     let threads = surfaces.threads;
     let started = Instant::now();
@@ -88,6 +92,8 @@ fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
     let given = [
         ("seeds", args.seeds.is_some(), "it chooses the seeds; --seed gives the first one"),
         ("vary", !args.vary.is_empty(), "a mean has one problem"),
+        ("times", args.times.is_some(), "a mean has one problem"),
+        ("speeds", args.speeds.is_some(), "a mean has one problem"),
         ("shard", args.shard.is_some(), "what is solved next depends on earlier results"),
         ("list", args.list.is_some(), "what is solved next depends on earlier results"),
         ("fields", args.fields, "its rows have none"),

@@ -2,6 +2,7 @@
 
 pub(crate) mod args;
 mod bar;
+mod creep;
 mod doubts;
 pub(crate) mod interrupt;
 mod list;
@@ -38,6 +39,7 @@ use self::args::{SweepArgs, SweepCommand};
 use self::solved::HowRows;
 use self::surfaces::Surfaces;
 use crate::error::CliError;
+use crate::files::kind::Kind;
 use crate::run::stop::Stop;
 use crate::terminal;
 
@@ -63,6 +65,9 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     }
     let (shard, folder) = part::resolve(args.shard, &folder)?;
     plan.check_shard(shard)?;
+    if !args.resume {
+        Kind::Sweep.check_out(&folder)?;
+    }
     doubts::refuse_early(&surfaces)?;
     let sweep = Sweep::start(part::deal(plan, shard, &surfaces), shard, &folder, args.resume)?;
     execute(&surfaces, &Arc::new(sweep), (shard, &folder))

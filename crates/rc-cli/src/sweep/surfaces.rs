@@ -8,8 +8,9 @@ use rc_sweep::{ControlKind, FileMark, Loads, MAX_ROWS, PlannedSurface, Seeds, Sw
 use serde_json::json;
 
 use super::args::SweepArgs;
+use super::creep;
 use super::map_mark::MapMark;
-use super::varied::Varied;
+use super::varied::{Variation, Varied};
 use crate::error::CliError;
 use crate::files::names::SCENE_FILE;
 use crate::run::threads;
@@ -33,6 +34,8 @@ pub(super) struct SweptSurface {
     /// Resolved keys without a load.
     contact: ContactKeys,
     loads: Vec<f64>,
+    /// Ratio of the loads to the load under which a solid creeps, at a time.
+    creep: Option<f64>,
     /// Mark that identifies a height map which a program holds.
     held: Option<FileMark>,
 }
@@ -69,9 +72,13 @@ impl Surfaces {
         let n_scenes = scenes.len();
         let scenes = varied(args, scenes)?;
         let control = control(args, &scenes)?;
+        let scenes = creep::after_times(args, control, scenes)?;
         let mut surfaces = Vec::new();
-        for (name, values, scene) in &scenes {
-            let loads = loads(args, control, &scene.contact)?;
+        for (name, values, scene, creep) in &scenes {
+            let mut loads = loads(args, control, &scene.contact)?;
+            for load in &mut loads {
+                *load *= creep.unwrap_or(1.0);
+            }
             check_rows(scenes.len(), args.seeds.as_ref(), loads.len().max(1))?;
             // One scene alone needs no name.
             let in_scene = |error| match error {
@@ -80,7 +87,7 @@ impl Surfaces {
             };
             for keys in seeded(args.seeds.as_ref(), name, scene)? {
                 let surface = SweptSurface::new(name, keys, control, &loads).map_err(in_scene)?;
-                surfaces.push(surface.with(values.clone()));
+                surfaces.push(SweptSurface { creep: *creep, ..surface.with(values.clone()) });
             }
         }
         Ok(Self { control, all: surfaces, n_scenes, keeps_fields: args.fields, run, threads })
@@ -119,9 +126,9 @@ impl Surfaces {
         &self.all
     }
 
-    /// Whether flows are computed.
+    /// Whether flows are computed, whose end under a greater load is sought.
     pub(super) fn leak(&self) -> bool {
-        self.all.iter().any(SweptSurface::leaks)
+        self.all.iter().any(|surface| surface.leaks() && surface.creep.is_none())
     }
 
     /// Quantity of the loads.
@@ -214,7 +221,8 @@ impl SweptSurface {
         let contact = resolve::contact(keys, setup.cell)?;
         let setup = setup.bounded(contact.boundary)?;
         let contact = with_load(control, &contact.keys, None);
-        Ok(Self { scene: name.to_owned(), varied: Varied::new(), seed, setup, contact, loads, held: None })
+        let (scene, varied) = (name.to_owned(), Varied::new());
+        Ok(Self { scene, varied, seed, setup, contact, loads, creep: None, held: None })
     }
 
     /// The contact under `load`, ready to be solved.
@@ -226,6 +234,7 @@ impl SweptSurface {
         let mut contact = resolve::contact(keys, self.setup.cell)?;
         // The memory of a machine must not change the digits of a row.
         contact.params.method_follows_memory = false;
+        contact.creep = self.creep;
         Ok(contact)
     }
 
@@ -315,6 +324,9 @@ fn check_alternatives(args: &SweepArgs) -> Result<(), CliError> {
         let message = format_args!("{first} and {second} are both given; a sweep has one control, so give exactly one");
         return Err(CliError::input(message));
     }
+    if args.speeds.is_some() && contact.speed.is_some() {
+        return Err(CliError::input("--speeds and --speed are both given; give one of them"));
+    }
     if args.seeds.is_some() && args.scene.surface.seed.is_some() {
         return Err(CliError::input("--seeds and --seed are both given; give one of them"));
     }
@@ -340,9 +352,10 @@ fn scenes(args: &SweepArgs) -> Result<Vec<(String, Scene)>, CliError> {
 
 /// The scenes with their names, in all variations.
 fn varied(args: &SweepArgs, scenes: Vec<(String, Scene)>) -> Result<Vec<(String, Varied, Scene)>, CliError> {
+    let variations: Vec<Variation> = args.vary.iter().chain(&args.speeds).cloned().collect();
     let mut all = Vec::new();
     for (name, scene) in scenes {
-        let varied = super::varied::scenes(&args.vary, &scene)?;
+        let varied = super::varied::scenes(&variations, &scene)?;
         all.extend(varied.into_iter().map(|(values, scene)| (name.clone(), values, scene)));
     }
     Ok(all)

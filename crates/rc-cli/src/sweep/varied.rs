@@ -16,6 +16,8 @@ pub struct Variation {
     /// The key, as in scene files.
     key: String,
     list: List,
+    /// The flag that gives the list.
+    flag: &'static str,
 }
 
 /// The values of a key, as a scene file has them.
@@ -58,6 +60,14 @@ impl Variation {
         Self::checked(key, List::Values(values))
     }
 
+    /// The list of `--speeds`.
+    ///
+    /// # Errors
+    /// One line about a value that occurs twice.
+    pub(super) fn speeds(text: &str) -> Result<Self, String> {
+        Ok(Self { flag: "speeds", ..format!("speed={text}").parse()? })
+    }
+
     /// The key, as in scene files.
     pub(super) fn key(&self) -> &str {
         &self.key
@@ -73,7 +83,7 @@ impl Variation {
                 return Err(format!("{key} has the value {value} twice"));
             }
         }
-        Ok(Self { key, list })
+        Ok(Self { key, list, flag: "vary" })
     }
 
     /// The scenes with each of the values, and the values in SI units.
@@ -93,7 +103,8 @@ impl Variation {
     /// The scene with this value, and the value in SI units.
     fn with(&self, value: &toml::Value, scene: &Scene) -> Result<(Value, Scene), CliError> {
         let table = Table::from_iter([(self.key.clone(), value.clone())]);
-        let upper = file::from_table(&table).map_err(|error| CliError::input(format_args!("vary: {error}")))?;
+        let upper =
+            file::from_table(&table).map_err(|error| CliError::input(format_args!("{}: {error}", self.flag)))?;
         let groups = [json!(upper.surface), json!(upper.contact)];
         let in_si = groups.iter().filter_map(|group| group.get(&self.key)).find(|value| !value.is_null());
         match in_si {
@@ -103,7 +114,7 @@ impl Variation {
     }
 
     fn refused(&self, message: impl std::fmt::Display) -> CliError {
-        CliError::input(format_args!("vary: {}: {message}", self.key))
+        CliError::input(format_args!("{}: {}: {message}", self.flag, self.key))
     }
 }
 

@@ -47,15 +47,18 @@ fn maximum_pressure(solution: &Solution<'_>) -> f64 {
 }
 
 fn maximum(pressure: f64, contact: &ContactSetup) -> Option<Warning> {
+    // A fast contact has the strains of the glassy solid.
+    let glassy_ratio = contact.sliding.as_ref().map_or(1.0, |sliding| sliding.material.glassy_ratio());
     let text = || {
         format!(
-            "the maximum pressure of {} is {} E*, which few materials bear elastically; give a --hardness, or check the units \
+            "the maximum pressure of {} is {} {}E*, which few materials bear elastically; give a --hardness, or check the units \
              of load and modulus",
             engineering(contact.units.pascals(pressure), "Pa"),
-            digits(pressure, 3)
+            digits(pressure / glassy_ratio, 3),
+            if glassy_ratio > 1.0 { "glassy " } else { "" }
         )
     };
-    (pressure > LARGE_PRESSURE).then(|| Warning::new(Load, text()))
+    (pressure > LARGE_PRESSURE * glassy_ratio).then(|| Warning::new(Load, text()))
 }
 
 /// Part of the contact edges where heights jump above which the contact area depends on the samples.

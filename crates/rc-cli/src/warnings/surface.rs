@@ -7,12 +7,13 @@ use rc_core::{Field, Grid, PeriodicCell};
 use rc_fractal::{Texture, height_and_slope_of_grid, height_and_slope_of_patch};
 use rc_heights::suspicion::{Counter, Suspicions};
 use rc_heights::{BorderStep, Effect, HeightMap, Level, Periodic, Treatment, hann};
-use rc_sweep::Warning;
 use rc_sweep::WarningCode::{
     Assumed, Border, Columns, Counter as CounterCode, Marks, Mirror, Missing, Slope, Spikes, Tilt, Units,
 };
+use rc_sweep::{Warning, WarningCode};
 
 use crate::files::beside;
+use crate::scene::origin;
 
 /// rms slope above which a surface is hardly a rough one.
 ///
@@ -135,7 +136,7 @@ pub(crate) fn of_map(map: &HeightMap) -> Vec<Warning> {
     if let Some(spikes) = spikes {
         let text = format!(
             "{} {} far from all neighbours, by up to {}; if measured wrongly, they carry a light load alone, so remove them \
-             before (rc surface --despike)",
+             before (rc surface FILE --despike --out DIR)",
             count(spikes.count, "point"),
             if spikes.count == 1 { "stands" } else { "stand" },
             engineering(spikes.largest, "m")
@@ -143,6 +144,21 @@ pub(crate) fn of_map(map: &HeightMap) -> Vec<Warning> {
         found.push(Warning::new(Spikes, text));
     }
     found
+}
+
+/// Doubts about the values of the map in metres that was read from `path`.
+///
+/// Points of a coarser map stand far from their neighbours more easily. Spikes of a map that `rc` has despiked and then
+/// resampled are those of its record, from before the resampling.
+pub(crate) fn of_file(path: &Path, map: &HeightMap) -> Vec<Warning> {
+    let found = of_map(map);
+    let treatments = origin::of(path, None).treatments;
+    let at = |name: &str| treatments.iter().rposition(|treatment| treatment.starts_with(name));
+    if at("despike").zip(at("resample")).is_none_or(|(despike, resample)| despike > resample) {
+        return found;
+    }
+    let others = found.into_iter().filter(|warning| warning.code != Spikes);
+    others.chain(recorded(path, |code| code == Spikes)).collect()
 }
 
 /// A doubt about a map that is tilted, of which a twin is made.
@@ -183,13 +199,19 @@ pub(crate) fn filled(missing: usize, all: usize) -> Option<Warning> {
 ///
 /// The map itself does not show which points were filled, or that it was mirrored.
 pub(crate) fn of_record(path: &Path) -> Vec<Warning> {
+    recorded(path, |code| matches!(code, Missing | Mirror))
+}
+
+/// The warnings with these codes in the record beside the map at `path`.
+fn recorded(path: &Path, is_meant: fn(WarningCode) -> bool) -> Vec<Warning> {
     #[derive(serde::Deserialize)]
     struct Record {
         warnings: Vec<Warning>,
     }
-    let of_treatments = |warning: &Warning| matches!(warning.code, Missing | Mirror);
     let first = beside::records(path).next();
-    first.map_or_else(Vec::new, |Record { warnings }| warnings.into_iter().filter(of_treatments).collect())
+    first.map_or_else(Vec::new, |Record { warnings }| {
+        warnings.into_iter().filter(|warning| is_meant(warning.code)).collect()
+    })
 }
 
 /// A doubt about a measured map with a lay, which is a quarter of `map` after its `treatments`.

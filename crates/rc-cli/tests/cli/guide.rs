@@ -64,6 +64,7 @@ fn prepare(place: &Place) {
     place.write("psd.csv", "q,C\n6.2e3,2e-22\n2e4,2e-22\n1e5,6e-25\n");
     let height = |i: u32| (f64::from(i) * 0.31).sin() + 0.1 * f64::from(i * i % 17);
     place.write("profile.txt", (0..256).map(|i| format!("{i} {}\n", 0.1 * height(i))).collect::<Vec<_>>().concat());
+    fs::copy(repository().join("data/prony.csv"), place.path("rubber.csv")).expect("a Prony series");
     place.write("a.toml", "waves = 8\ngrid = 64\n");
     place.write("b.toml", "waves = 8\ngrid = 64\nhurst = 0.5\n");
     // It stands for the file of an instrument. The format follows from the first bytes.

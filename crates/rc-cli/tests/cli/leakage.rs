@@ -132,11 +132,21 @@ fn a_sweep_finds_the_pressure_at_which_the_film_closes() {
     let loads = ["--pressures", "1e5:1.2e7:4", "--out", "seal"];
     let output = place.run(&[&["sweep"][..], &scene, &film, &loads].concat());
     assert_solved(&output);
-    assert!(text(&output.stdout).contains("sealing pressure: "), "{}", text(&output.stdout));
+    let printed = text(&output.stdout);
+    let line = printed.lines().find(|line| line.starts_with("sealing pressure: ")).expect("a line").to_owned();
+    assert!(line.contains(" MPa, contact area ") && line.ends_with("along y"), "{line}");
+    assert!(text(&place.run(&["inspect", "seal"]).stdout).contains(&line), "inspect says it too");
+    assert_solved(&place.run(&["report", "seal", "--quiet"]));
+    let page = text(&place.bytes("seal/report.html"));
+    assert!(page.contains(&line[1..]) && page.contains("flow along y (m³/s)") && !page.contains("Percolation is lost"));
+    let head = text(&place.bytes("seal/sweep.csv")).lines().next().expect("a head").to_owned();
+    assert!(head.contains("flow_x,flow_y,flow_error_x,flow_error_y"), "{head}");
     let sealing = place.json("seal/sealing.json");
     let along_x = &sealing["problems"][0]["surfaces"][0];
     let [leaks, seals] = [0, 1].map(|i| along_x["bracket"][i].as_f64().expect("a pressure"));
     assert!(leaks < seals && seals < 1.011 * leaks, "{along_x}");
+    let areas = [0, 1].map(|i| along_x["area_fraction"][i].as_f64().expect("an area"));
+    assert!(0.1 < areas[0] && areas[0] < areas[1], "{along_x}");
     for (pressure, percolates) in [(leaks, true), (seals, false)] {
         let pressure = pressure.to_string();
         let folder = format!("at-{percolates}");

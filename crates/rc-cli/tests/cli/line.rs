@@ -57,6 +57,17 @@ fn half_of_a_wave_touches_in_every_file_of_the_profile() {
     }
     solved(&place, "wave.csv", &["--out", "r"]);
     assert!(text(&place.bytes("r/pressure.npy")[..128]).contains("(1, 1024, )"), "one row");
+    assert_solved(&place.run(&["report", "r", "--quiet"]));
+    let page = text(&place.bytes("r/report.html"));
+    for words in [
+        "1024 elements, line contact",
+        "width of a contact",
+        " µm wide, 100 % of the contact",
+        "\"Pa, Pq\"",
+        "a profile: rms",
+    ] {
+        assert!(page.contains(words), "no '{words}'");
+    }
     let again = place.run(&["solve", "r", "--quiet", "--out", "again"]);
     assert_solved(&again);
     assert_eq!(place.bytes("r/pressure.npy"), place.bytes("again/pressure.npy"));
@@ -165,6 +176,44 @@ fn a_profile_has_the_parameters_of_the_standard_with_and_without_filters() {
     ] {
         assert_refused(&place.run(&[&["inspect", "waves.csv"][..], &args].concat()), expected);
     }
+}
+
+#[test]
+fn a_prepared_profile_has_the_filters_and_others_refuse_them() {
+    let place = Place::new();
+    let waves = |i: u32| 1e3 * height(8 * i % N) + 1e9 * height(i);
+    let line = |i: u32| format!("{:.4},{:.6}\n", f64::from(i) * 1e3 / f64::from(N), waves(i));
+    place.write("wave.csv", "x (um),z (nm)\n".to_owned() + &(0..N).map(line).collect::<Vec<_>>().concat());
+    let make = ["surface", "--heights", "wave.csv", "--line", "--quiet"];
+    assert_solved(&place.run(&[&make[..], &["--out", "plain"]].concat()));
+    assert_solved(&place.run(&[&make[..], &["--periodic", "mirror", "--out", "mirrored"]].concat()));
+    let inspect = |file: &str, more: &[&str]| {
+        let output = place.run(&[&["inspect", file, "--json", "--lambda-c", "0.2mm"], more].concat());
+        assert_solved(&output);
+        serde_json::from_slice::<Value>(&output.stdout).expect("valid JSON")
+    };
+    let of_file = inspect("wave.csv", &[]);
+    for folder in ["plain", "mirrored"] {
+        let of_folder = inspect(folder, &[]);
+        for key in ["Ra", "Rq", "Rz", "Rsk", "Pq", "evaluation_length"] {
+            assert_close(key, number(&of_folder, key), number(&of_file, key), 1e-6);
+        }
+    }
+    // The mean line is that of the filter: a short part of a long wave is not centred on its own mean.
+    let cut = inspect("wave.csv", &["--lambda-s", "20um"]);
+    assert!(number(&cut, "Rq") > 0.0 && number(&cut, "Pq") > number(&cut, "Rq"), "{cut}");
+    assert_solved(&place.run(&["solve", "plain", "--e-star", "1e9", "--pressure", "1e5", "--quiet", "--out", "r"]));
+    assert_refused(
+        &place.run(&["inspect", "r", "--lambda-c", "0.2mm"]),
+        "lambda_c: applies to height maps and profiles",
+    );
+    assert_refused(&place.run(&["inspect", "r", "--unit", "um"]), "unit: applies to height maps and profiles");
+    assert_solved(&place.run(&["surface", "--waves", "8", "--grid", "64", "--quiet", "--out", "map"]));
+    assert_refused(&place.run(&["inspect", "map", "--lambda-c", "0.2mm"]), "lambda_c: applies to profiles");
+    assert_refused(
+        &place.run(&["surface", "mirrored", "--periodic", "mirror"]),
+        "is periodic already (periodic mirror)",
+    );
 }
 
 #[test]

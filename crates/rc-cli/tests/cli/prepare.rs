@@ -233,3 +233,35 @@ fn a_mirrored_map_has_the_spectrum_of_its_measured_part() {
     let copies = treated("mirrored", &["--repeat", "2x1"], "copies");
     assert!(copies.get("notes").is_none(), "copies are left as they are");
 }
+
+/// A bump of 4 x 4 points is no spike, but on a grid that is four times coarser it is one point.
+#[test]
+fn spikes_after_despiking_are_those_before_resampling() {
+    let place = Place::new();
+    let height = |x: usize, y: usize| {
+        let wave = (x as f64 / 5.0).sin() * (y as f64 / 7.0).cos() + 0.3 * ((3 * x + 5 * y) as f64 / 11.0).sin();
+        let is_bump = (64..68).contains(&x) && (40..44).contains(&y);
+        1e-7 * wave + if is_bump { 5e-6 } else { 0.0 }
+    };
+    let bytes: Vec<u8> = (0..128 * 128).flat_map(|i| height(i % 128, i / 128).to_le_bytes()).collect();
+    place.write("map.npy", npy("<f8", false, "(128, 128)", &bytes));
+    let prepare =
+        ["prepare", "map.npy", "--cell", "1e-3", "--no-periodic", "--resample", "32", "--quiet", "--out", "ready"];
+    assert_solved(&place.run(&prepare));
+    assert!(!codes(&place.json("ready/surface.json")).contains(&"spikes".to_owned()));
+    let solve = ["--boundary", "free", "--e-star", "1e9", "--pressure", "1e5", "--quiet", "--out", "r"];
+    assert_solved(&place.run(&[&["solve", "ready"], &solve[..]].concat()));
+    assert!(!codes(&place.json("r/summary.json")).contains(&"spikes".to_owned()));
+    // The map alone says nothing of its treatments. A folder is also taken with --heights.
+    let alone = ["surface", "--heights", "ready", "--quiet", "--out", "alone.npy"];
+    assert_solved(&place.run(&alone));
+    let found = place.run(&["inspect", "alone.npy", "--cell", "1e-3"]);
+    assert!(text(&found.stderr).contains("1 point stands far from all neighbours"), "{}", text(&found.stderr));
+    assert!(text(&found.stderr).contains("(rc surface FILE --despike --out DIR)"));
+    let remedy = ["surface", "alone.npy", "--cell", "1e-3", "--despike", "--quiet", "--out", "without"];
+    assert_solved(&place.run(&remedy));
+    // A map that is periodic is not mirrored again.
+    assert_solved(&place.run(&["prepare", "map.npy", "--cell", "1e-3", "--quiet", "--out", "mirrored"]));
+    let twice = place.run(&["prepare", "mirrored", "--quiet", "--out", "twice"]);
+    assert_refused(&twice, "is periodic already (periodic mirror); give --no-periodic to rc prepare");
+}

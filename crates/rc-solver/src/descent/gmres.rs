@@ -104,6 +104,14 @@ pub(crate) struct LinearSystem<'a> {
     pub(crate) fixed_mean: bool,
 }
 
+/// Maximum number of directions, and the number for a system of all elements.
+const DIRECTIONS: [usize; 2] = [40, 10];
+
+/// The number of directions for `n` of `n_all` elements, whose vectors need at most 80 bytes for each of all elements.
+pub(crate) fn directions(n: usize, n_all: usize) -> usize {
+    (DIRECTIONS[1] * n_all / n.max(1)).clamp(DIRECTIONS[1], DIRECTIONS[0])
+}
+
 /// When GMRES ends.
 #[derive(Clone, Copy)]
 pub(crate) struct Goal {

@@ -51,6 +51,8 @@ pub struct LevelValues {
     pub rms_pressure: f64,
     /// Penetration Δ, in λ, from the maximum height of the finest grid.
     pub penetration: f64,
+    /// Friction coefficient under a sliding surface. `None` at rest.
+    pub friction: Option<f64>,
 }
 
 /// Friction of a surface that slides steadily over a solid that relaxes.
@@ -60,13 +62,14 @@ pub struct LevelValues {
 pub struct Friction {
     /// μ, the ratio of the force against the velocity to the load: -⟨p ∂h⟩/σ0 along the velocity.
     pub coefficient: f64,
-    /// 95 % error of [`Friction::coefficient`], from its difference to [`Friction::of_displacement`].
+    /// 95 % error of [`Friction::coefficient`], from its differences to [`Friction::of_displacement`] and to the
+    /// coefficient on a coarser grid.
     pub error: f64,
     /// Proven bound on the error that the iteration leaves on this grid: √G ‖∂h‖/σ0, in the norm of (Re L)⁻¹.
     pub bound: f64,
     /// μ from the displacement, -⟨p ∂v⟩/σ0.
     pub of_displacement: f64,
-    /// The same as [`Friction::coefficient`] across the velocity, positive to its left.
+    /// Ratio to the load of the force on the solid across the velocity, positive to its left.
     pub lateral: f64,
     /// Dissipated power per nominal area, in E* λ per unit of time.
     pub power: f64,

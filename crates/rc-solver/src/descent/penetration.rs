@@ -4,7 +4,7 @@
 
 use crate::descent::operators::{read_blocks, write_blocks};
 use crate::descent::rows::{self, ElementValues};
-use crate::descent::state::Descent;
+use crate::descent::state::{Descent, Follows};
 use crate::descent::sums::GapSums;
 use crate::parallel;
 use crate::problem::control::Control;
@@ -32,6 +32,7 @@ impl Descent<'_> {
             return self.settle(sums);
         }
         match sums.scale_to_penetration(self.problem) {
+            _ if self.follows == Follows::Changes => self.follow_penetration(sums),
             None if !sums.may_scale() => self.follow_penetration(sums),
             None => self.settle(sums),
             Some(_) if self.problem.support.is_none() && sums.n_contact >= self.n_cell() => {

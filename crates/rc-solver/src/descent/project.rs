@@ -7,7 +7,7 @@ use crate::descent::operators::{read_blocks, write_blocks};
 use crate::descent::penetration::STEPS;
 use crate::descent::rows::{self, ElementValues, Gradient};
 use crate::descent::shares::{Load, Shares, Squares};
-use crate::descent::state::Descent;
+use crate::descent::state::{Descent, Follows};
 use crate::descent::stop::{Stopped, unless_stopped};
 use crate::descent::sums::GapSums;
 use crate::parallel;
@@ -62,7 +62,7 @@ impl Descent<'_> {
     /// Restores the loads of squares after clipping. The gap follows all changes of the pressure.
     fn restore(&mut self, shares: &Shares, reached: bool, unit: f64) -> GapSums {
         // Loads are only moved between squares. Scaling, which is exact, then sets the load of the cell.
-        let scale = if reached {
+        let scale = if reached || self.follows == Follows::Changes {
             self.share_within_bounds(shares, unit);
             1.0
         } else {

@@ -23,6 +23,15 @@ pub(crate) enum Start {
     Known { pressure: Vec<f64>, gap: Vec<f64> },
 }
 
+/// What the displacement in the gap follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Follows {
+    /// The pressure: v = L p.
+    Pressure,
+    /// Changes of the pressure only. Scaling a pressure does not scale the displacement then.
+    Changes,
+}
+
 /// Pressure, gap and everything that one level needs to improve them.
 pub(crate) struct Descent<'a> {
     pub(crate) problem: &'a Problem,
@@ -44,6 +53,7 @@ pub(crate) struct Descent<'a> {
     pub(crate) pressed: f64,
     /// The stiffness of the last step along p (1 - p/H), which preconditions the mean. `None` if it has none.
     pub(crate) stiffness: Option<f64>,
+    pub(crate) follows: Follows,
     /// Whether a pressure was given to start from. The flag below says the same of the gap.
     pub(crate) has_start: bool,
     pub(crate) has_gap: bool,
@@ -95,6 +105,7 @@ impl<'a> Descent<'a> {
             zero_gap: 0.0,
             pressed: f64::INFINITY,
             stiffness: None,
+            follows: Follows::Pressure,
             has_start,
             has_gap,
             info: LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 },

@@ -97,7 +97,10 @@ pub(crate) fn stiffness_by_gmres(
     operator.set_mean(secant);
     let elements = ActiveElements::new(active, layout.len());
     let one = vec![1.0; elements.len()];
-    let goal = gmres::Goal { reduction: 0.1 * gain(converged), directions: 2 * MAX_STEPS };
+    let goal = gmres::Goal {
+        reduction: 0.1 * gain(converged),
+        directions: 2 * gmres::directions(elements.len(), pressure.len()),
+    };
     let mut system = LinearSystem { operator, elements: &elements, fixed_mean: false };
     let Ok((x, _)) = system.solve(one, goal, &rc_core::Silent) else { return f64::NAN };
     let sums = parallel::map(x.chunks(layout.len()), |x| x.iter().copied().map(f64::from).sum::<f64>());

@@ -41,7 +41,7 @@ impl<T: TransformReal> Factors<T> {
 impl Factors<f64> {
     /// L of `kernel` on a periodic `grid`.
     pub(crate) fn of(kernel: &dyn Kernel, grid: Grid) -> Self {
-        match kernel.sliding_symbol(grid) {
+        match kernel.sliding_velocity().and_then(|_| kernel.sliding_symbol(grid)) {
             None => Self::AtRest(SymbolTable::new(grid, kernel.symbol(grid))),
             Some(symbol) => Self::Sliding(WaveTable::new(grid, symbol)),
         }

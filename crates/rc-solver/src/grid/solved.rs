@@ -13,6 +13,7 @@ use crate::grid::stiffness::contact_stiffness;
 use crate::grid::uniform_operator::UniformOperator;
 use crate::problem::kernel::OwnedKernel;
 use crate::problem::support::Support;
+use crate::solution::contact_area::moduli::moduli;
 use crate::solution::gap_part::GapPart;
 use crate::solution::observables::Observables;
 use crate::solution::rows::{Halted, Receiver, Rows, TakeRows};
@@ -36,6 +37,8 @@ pub(crate) enum Response<'a> {
         bias: EdgeBias,
         /// The boundary of the heights.
         boundary: Boundary,
+        /// The moduli of edges under a sliding surface.
+        moduli: Option<[[f64; 2]; 3]>,
     },
 }
 
@@ -50,8 +53,8 @@ impl Response<'_> {
         };
         match (self, shared) {
             (_, Some(kernel)) => Response::Kernel(OwnedKernel::Shared(kernel)),
-            (Self::Outlived { stiffness, conductance, displacement, bias, boundary }, _) => {
-                Response::Outlived { stiffness, conductance, displacement, bias, boundary }
+            (Self::Outlived { stiffness, conductance, displacement, bias, boundary, moduli }, _) => {
+                Response::Outlived { stiffness, conductance, displacement, bias, boundary, moduli }
             }
             (response, _) => Response::Outlived {
                 stiffness: response.stiffness(solution, hardness),
@@ -59,6 +62,7 @@ impl Response<'_> {
                 displacement: response.displacement(&solution.pressure),
                 bias: response.edge_bias(solution.pressure.grid()),
                 boundary: response.boundary(solution.pressure.grid()),
+                moduli: response.moduli(&solution.pressure),
             },
         }
     }
@@ -69,6 +73,15 @@ impl Response<'_> {
             Self::Kernel(kernel) => kernel.get().edge_bias(grid),
             Self::Operator(_) => EdgeBias::default(),
             Self::Outlived { bias, .. } => *bias,
+        }
+    }
+
+    /// The moduli of edges under a sliding surface.
+    fn moduli(&self, pressure: &Field) -> Option<[[f64; 2]; 3]> {
+        match self {
+            Self::Kernel(kernel) => moduli(kernel.get(), pressure),
+            Self::Operator(_) => None,
+            Self::Outlived { moduli, .. } => *moduli,
         }
     }
 
@@ -178,7 +191,8 @@ impl Solved for GridSolved<'_> {
 
     fn observables(&self) -> Observables {
         let boundary = self.response.boundary(self.grid());
-        Observables::of(&self.solution, self.hardness, self.response.edge_bias(self.grid()), boundary)
+        let moduli = self.response.moduli(&self.solution.pressure);
+        Observables::of(&self.solution, self.hardness, self.response.edge_bias(self.grid()), boundary, moduli)
     }
 
     fn stiffness(&self) -> f64 {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use rc_core::{Boundary, Grid, Observer};
 use rc_quadtree::{TILE, TileSet};
 
-use crate::descent::info::{Friction, LevelInfo, LevelValues, SolveInfo};
+use crate::descent::info::{Friction, LevelInfo, LevelValues, SolveInfo, Status};
 use crate::descent::run::Goal;
 use crate::grid::prolongation::edge_function;
 use crate::levels::agreed_stop::AgreedStop;
@@ -18,7 +18,7 @@ use crate::levels::checkpoint::{TileStart, keep, kept};
 use crate::levels::coarse_level::{SolvedLevel, add_work, solve_coarse_level};
 use crate::levels::estimate::Estimate;
 use crate::levels::finest_level::solve_finest_level;
-use crate::levels::grids::{GridLevels, coarser_heights};
+use crate::levels::grids::{GridLevels, SMALLEST_SIDE, coarser_heights};
 use crate::levels::nested::{Begun, History, Levels, Nested};
 use crate::levels::operator_error::{PressureScale, can_certify, certifying_split};
 use crate::levels::sliding::SlidingLevels;
@@ -102,7 +102,7 @@ impl<'a> TileLevels<'a> {
     /// Solves whole grids up to the base grid.
     fn solve_base(&self, observer: &dyn Observer) -> Begun<TileStart> {
         let (heights, n_above) = (self.data.heights.base(), self.ladder().n_levels());
-        let coarser = coarser_heights(heights, self.boundary());
+        let coarser = coarser_heights(heights, self.boundary(), SMALLEST_SIDE);
         let grids = GridLevels::new(self.kernel.get(), &self.problem, (heights, &coarser), n_above);
         let (nested, kernel) = (self.nested(grids.n_levels(), observer), self.kernel.get());
         let ((descent, outcome), mut history) = if kernel.sliding_velocity().is_some() {
@@ -189,8 +189,13 @@ impl<'a> TileLevels<'a> {
         let SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, work, .. } = level;
         let (contact_gap, hardness) = (outcome.contact_gap, self.problem.bounds.hardness);
         let bias = self.kernel.get().edge_bias(grid);
-        let values = Values { mesh: &elements, pressure: &pressure, gap: &gap, contact_gap, hardness, bias };
-        let (area, plastic) = (values.contact_area(grid), values.plastic_edges(grid));
+        let moduli = [1.0; 2];
+        let values = Values { mesh: &elements, pressure: &pressure, gap: &gap, contact_gap, hardness, bias, moduli };
+        let area = match self.data.kernels.sliding() {
+            Some(compliance) => values.sliding_area(grid, compliance),
+            None => values.contact_area(grid),
+        };
+        let plastic = values.plastic_edges(grid);
         let mut info = outcome.info(&self.problem, history.levels, history.coarser);
         if self.boundary() == Boundary::Free {
             info.mean_displacement += displacement_of_patch(&elements, &pressure, grid);
@@ -213,6 +218,15 @@ impl<'a> TileLevels<'a> {
         }
     }
 
+    /// Friction coefficient of a level. `None` if nothing slides.
+    fn coefficient(&self, above: usize, level: &SolvedLevel) -> Option<f64> {
+        let (kernel, grid) = (self.kernel.get(), self.grid(above));
+        kernel.sliding_velocity()?;
+        let (mesh, pressure) = (&level.elements, &level.pressure);
+        let contact = SlidingContact { data: &self.data, kernel, grid, mesh, pressure };
+        Some(contact.force() / level.outcome.mean_pressure)
+    }
+
     /// Friction of a pressure on elements of `grid`. `None` if nothing slides.
     fn friction(
         &self,
@@ -223,7 +237,7 @@ impl<'a> TileLevels<'a> {
     ) -> Option<Friction> {
         let kernel = self.kernel.get();
         let contact = SlidingContact { data: &self.data, kernel, grid, mesh, pressure };
-        Some(finished((info, false), &contact.sums()?, kernel.sliding_velocity()?, work))
+        Some(finished((info, Status::Converged, false), &contact.sums()?, kernel.sliding_velocity()?, work))
     }
 
     fn nested<'n>(&'n self, n_levels: usize, observer: &'n dyn Observer) -> Nested<'n> {
@@ -258,10 +272,11 @@ impl Levels for TileLevels<'_> {
         level.info
     }
 
-    fn values(&self, (level, _): &Self::Solved, _above: usize) -> Option<LevelValues> {
+    fn values(&self, (level, _): &Self::Solved, above: usize) -> Option<LevelValues> {
         self.ladder().is_even().then(|| LevelValues {
             rms_pressure: rms_pressure(&level.elements, &level.pressure),
             penetration: self.problem.h_max + level.outcome.approach,
+            friction: self.coefficient(above, level),
         })
     }
 

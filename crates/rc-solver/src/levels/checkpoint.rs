@@ -117,14 +117,14 @@ fn read(
     offset += (own.start * f64::BYTES) as u64;
     let pressure = f64::unpack_all(&checkpoint.read(offset, own.len() * f64::BYTES)?);
     let mesh = MeshStart { elements, pressure };
-    let coarser = (has_coarser > 0.0).then_some(LevelValues { rms_pressure, penetration });
+    let coarser = (has_coarser > 0.0).then_some(LevelValues { rms_pressure, penetration, friction: None });
     Some((TileStart { grid, mesh, contact_gap, energy_length, tile_fraction }, History { levels, coarser }))
 }
 
 fn numbers(start: &TileStart, history: &History) -> Vec<f64> {
     let TileStart { grid, mesh, contact_gap, energy_length, tile_fraction } = start;
     let of_coarser = match history.coarser {
-        Some(LevelValues { rms_pressure, penetration }) => [1.0, rms_pressure, penetration],
+        Some(LevelValues { rms_pressure, penetration, .. }) => [1.0, rms_pressure, penetration],
         None => [0.0; 3],
     };
     let head = [mesh.elements.finest().len() as f64, grid.nx() as f64, grid.ny() as f64, *contact_gap, *energy_length];

@@ -16,14 +16,14 @@ use crate::problem::checked::Problem;
 /// Minimum number of elements per side of the coarsest grid.
 ///
 /// A smaller grid costs nothing, so coarser ones do not prepare it.
-const SMALLEST_SIDE: usize = 64;
+pub(crate) const SMALLEST_SIDE: usize = 64;
 
 /// Number of pressures that are summed at once.
 const PIECE: usize = 4096;
 
-/// The heights on the coarser of nested grids, finest first.
-pub(crate) fn coarser_heights(heights: &Field, boundary: Boundary) -> Vec<Field> {
-    coarsen(heights, boundary, Pits::Filled, about_halved(heights.grid(), SMALLEST_SIDE))
+/// The heights on the coarser of nested grids, finest first. The coarsest has at least this number of elements a side.
+pub(crate) fn coarser_heights(heights: &Field, boundary: Boundary, smallest: usize) -> Vec<Field> {
+    coarsen(heights, boundary, Pits::Filled, about_halved(heights.grid(), smallest))
 }
 
 /// Nested grids.
@@ -72,6 +72,7 @@ impl<'a> GridLevels<'a> {
         (above == self.n_above || is_half()).then(|| LevelValues {
             rms_pressure: rms(descent.pressure(), PIECE),
             penetration: self.problem.h_max + outcome.approach,
+            friction: None,
         })
     }
 

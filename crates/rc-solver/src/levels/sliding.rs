@@ -16,8 +16,11 @@ use crate::problem::checked::Problem;
 use crate::problem::error::ProblemError;
 use crate::problem::params::IterationParams;
 use crate::problem::support::Support;
-use crate::sliding::friction::friction;
+use crate::sliding::friction::{coefficient, friction};
 use crate::sliding::newton::{SlidingDescent, Work};
+
+/// Minimum number of elements per side of the coarsest grid. Small grids too are compared with a coarser one.
+const SMALLEST_SIDE: usize = 32;
 
 /// Solves the contact of `heights` (in λ, any mean) that slide over the solid of `kernel`.
 ///
@@ -33,7 +36,7 @@ pub(crate) fn solve_sliding(
     observer: &dyn Observer,
 ) -> Result<GridSolution, ProblemError> {
     let problem = Problem::check_on(Support::of(kernel, heights.grid()), heights, bounds, params)?;
-    let coarser = coarser_heights(heights, problem.support.boundary);
+    let coarser = coarser_heights(heights, problem.support.boundary, SMALLEST_SIDE);
     let full = full_contact::mean_pressure(&problem).and_then(|mean_pressure| {
         full_contact::solve((heights, &coarser), kernel, mean_pressure, &problem, params.bound)
     });
@@ -110,7 +113,9 @@ impl<'a> Levels for SlidingLevels<'a> {
     }
 
     fn values(&self, (sliding, outcome): &Self::Solved, above: usize) -> Option<LevelValues> {
-        self.grids.values_of(&sliding.descent, outcome, above)
+        let values = self.grids.values_of(&sliding.descent, outcome, above)?;
+        let pressure = Field::new(self.grid(above), sliding.descent.pressure().to_vec()).ok()?;
+        Some(LevelValues { friction: coefficient(&pressure, self.grids.heights(above), self.kernel), ..values })
     }
 
     fn start(&self, (sliding, _): Self::Solved, above: usize) -> Start {

@@ -6,7 +6,7 @@ use rc_core::{Boundary, Field, Kernel, Observer};
 
 use crate::descent::info::GridSolution;
 use crate::grid::full_contact;
-use crate::levels::grids::{GridLevels, coarser_heights};
+use crate::levels::grids::{GridLevels, SMALLEST_SIDE, coarser_heights};
 use crate::levels::nested::Nested;
 use crate::problem::bounds::Bounds;
 use crate::problem::checked::Problem;
@@ -45,7 +45,7 @@ pub(crate) fn solve_uniform(
 ) -> Result<GridSolution, ProblemError> {
     let problem = Problem::check_on(Support::of(kernel, heights.grid()), heights, bounds, params)?;
     let boundary = problem.support.boundary;
-    let coarser = coarser_heights(heights, boundary);
+    let coarser = coarser_heights(heights, boundary, SMALLEST_SIDE);
     if boundary == Boundary::Periodic
         && let Some(mean_pressure) = full_contact::mean_pressure(&problem)
         && let Some(solution) = full_contact::solve((heights, &coarser), kernel, mean_pressure, &problem, params.bound)

@@ -7,6 +7,10 @@ use rc_fft::half_plane_values;
 use crate::descent::info::{Friction, GridSolution, SolveInfo, Status};
 use crate::sliding::newton::Work;
 
+/// 95 % error of a friction coefficient, for each unit of its difference to that of the displacement, where there is no
+/// coarser grid to compare with.
+const ALONE: f64 = 5.0;
+
 /// Sums over waves, per nominal area and in E*.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Sums {
@@ -16,6 +20,8 @@ pub(crate) struct Sums {
     pub(crate) of_displacement: f64,
     /// ⟨∂h S⁻¹ ∂h⟩ along the velocity, with the symmetric part S of L.
     pub(crate) slope: f64,
+    /// Part of the friction of full contact that elements miss: their symbol is smaller by (q h)²/24.
+    pub(crate) missed: f64,
     /// Maximum of |Im L|/Re L.
     pub(crate) loss_tangent: f64,
 }
@@ -26,9 +32,16 @@ impl Sums {
             of_heights: std::array::from_fn(|i| self.of_heights[i] + other.of_heights[i]),
             of_displacement: self.of_displacement + other.of_displacement,
             slope: self.slope + other.slope,
+            missed: self.missed + other.missed,
             loss_tangent: self.loss_tangent.max(other.loss_tangent),
         }
     }
+}
+
+/// Friction coefficient of a pressure, -⟨p ∂h⟩/σ0 along the velocity.
+pub(crate) fn coefficient(pressure: &Field, heights: &Field, kernel: &dyn Kernel) -> Option<f64> {
+    let sums = sums(pressure, heights, kernel)?;
+    Some(sums.of_heights[0] / pressure.mean())
 }
 
 /// Friction of `solution`. `None` if nothing slides.
@@ -36,13 +49,20 @@ impl Sums {
 /// The force along the velocity is -⟨p ∂h⟩. In contact the slope of the displacement u = L p is that of the heights, so
 /// -⟨p ∂u⟩ is the same in the limit of small elements. On a grid the two differ, mostly by more than either is wrong.
 pub(crate) fn friction(solution: &GridSolution, heights: &Field, kernel: &dyn Kernel, work: Work) -> Option<Friction> {
+    let sums = sums(&solution.pressure, heights, kernel)?;
+    // A kernel of waves has no error inside contacts.
+    let is_exact = kernel.edge_bias(heights.grid()).per_difference == 0.0;
+    Some(finished((&solution.info, solution.status, is_exact), &sums, kernel.sliding_velocity()?, work))
+}
+
+fn sums(pressure: &Field, heights: &Field, kernel: &dyn Kernel) -> Option<Sums> {
     let (velocity, grid) = (kernel.sliding_velocity()?, heights.grid());
     let symbol = kernel.sliding_symbol(grid)?;
     let along = velocity.normalize_or(DVec2::X);
     let (nx, ny) = (grid.nx() as i64, grid.ny() as i64);
     let waves = |field: &Field| half_plane_values(field, field.mean(), |wave| wave);
-    let (pressures, heights) = (waves(&solution.pressure), waves(heights));
-    let scale = (grid.len() as f64).powi(-2);
+    let (pressures, heights) = (waves(pressure), waves(heights));
+    let (scale, spacing) = ((grid.len() as f64).powi(-2), grid.spacing());
     let of_wave = |place: usize| -> Sums {
         let (kx, row) = (place as i64 / ny, place as i64 % ny);
         let ky = if 2 * row > ny { row - ny } else { row };
@@ -51,7 +71,8 @@ pub(crate) fn friction(solution: &GridSolution, heights: &Field, kernel: &dyn Ke
         if kx == 0 && ky == 0 {
             return Sums::default();
         }
-        let mut q = grid.angular_wave(kx, ky);
+        let whole = grid.angular_wave(kx, ky);
+        let mut q = whole;
         (q.x, q.y) = (if is_half[0] { 0.0 } else { q.x }, if is_half[1] { 0.0 } else { q.y });
         let count = if kx == 0 || is_half[0] { 1.0 } else { 2.0 };
         let (p, h, factor) = (pressures[place], heights[place], symbol(kx, ky));
@@ -62,6 +83,7 @@ pub(crate) fn friction(solution: &GridSolution, heights: &Field, kernel: &dyn Ke
             of_heights: [q, across].map(|q| scale * count * q * product),
             of_displacement: scale * count * q * factor.im * p.norm_sqr(),
             slope: scale * count * q * q * h.norm_sqr() / factor.re,
+            missed: scale * count * q * product * (whole * spacing).length_squared() / 24.0,
             loss_tangent: factor.im.abs() / factor.re,
         }
     };
@@ -69,13 +91,18 @@ pub(crate) fn friction(solution: &GridSolution, heights: &Field, kernel: &dyn Ke
         .into_par_iter()
         .map(|kx| (kx * ny as usize..(kx + 1) * ny as usize).map(of_wave).fold(Sums::default(), Sums::plus))
         .collect();
-    let sums = columns.into_iter().fold(Sums::default(), Sums::plus);
-    let is_exact = solution.status == Status::FullContact && solution.info.certificate.energy < 1e-9;
-    Some(finished((&solution.info, is_exact), &sums, velocity, work))
+    Some(columns.into_iter().fold(Sums::default(), Sums::plus))
 }
 
-/// Friction from sums over a solution, which may be exact.
-pub(crate) fn finished((info, is_exact): (&SolveInfo, bool), sums: &Sums, velocity: DVec2, work: Work) -> Friction {
+/// Friction from sums over a solution of this status.
+///
+/// `is_exact` says that the kernel has no error inside contacts.
+pub(crate) fn finished(
+    (info, status, is_exact): (&SolveInfo, Status, bool),
+    sums: &Sums,
+    velocity: DVec2,
+    work: Work,
+) -> Friction {
     let load = info.mean_pressure;
     let coefficient = sums.of_heights[0] / load;
     let of_displacement = sums.of_displacement / load;
@@ -83,7 +110,15 @@ pub(crate) fn finished((info, is_exact): (&SolveInfo, bool), sums: &Sums, veloci
     let distance = info.certificate.energy * info.elastic_energy.max(0.0).sqrt();
     let bound = distance * sums.slope.sqrt() / load;
     let iteration = info.iteration_error.powi(2) * coefficient.abs();
-    let error = if is_exact { 0.0 } else { (coefficient - of_displacement).abs().max(iteration) };
+    let of_grid = match (status, info.coarser.and_then(|coarser| coarser.friction)) {
+        // All waves are there, and only the elements matter.
+        (Status::FullContact, _) if is_exact => 0.0,
+        (Status::FullContact, _) => sums.missed.abs() / load,
+        (_, Some(coarser)) => (coefficient - of_displacement).hypot(coefficient - coarser),
+        (_, None) => ALONE * (coefficient - of_displacement).abs(),
+    };
+    // Full contact is not iterated.
+    let error = if status == Status::FullContact { of_grid } else { of_grid.hypot(iteration) };
     Friction {
         coefficient,
         error,

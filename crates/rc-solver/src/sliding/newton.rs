@@ -11,15 +11,12 @@ use crate::descent::gmres::{self, ActiveElements, LinearSystem};
 use crate::descent::operators::PreconditionedOperator;
 use crate::descent::outcome::Outcome;
 use crate::descent::run::{DescentObserver, Goal};
-use crate::descent::state::Descent;
+use crate::descent::state::{Descent, Follows};
 use crate::descent::stop::Stopped;
 use crate::descent::sums::GapSums;
 
 /// Range of the residual that GMRES leaves of the system of a Newton step, relative to its right side.
 const REDUCTIONS: [f64; 2] = [0.1, 0.4];
-
-/// Maximum number of directions of GMRES, whose vectors have values of the active elements only.
-const DIRECTIONS: usize = 40;
 
 /// Parts of a Newton step that are tried.
 const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
@@ -27,17 +24,22 @@ const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 /// A part s of a step is taken if it lowers the energy error by this times s.
 const PROGRESS: f64 = 0.1;
 
-/// Failed Newton steps in a row after which steps with the storage modulus are solved well.
-const FAILURES: usize = 3;
+/// Failed Newton steps, without a new smallest error, after which steps with the storage modulus are solved well.
+const FAILURES: u32 = 6;
 
-/// Such steps, and the rounds of each. They are doubled up to [`LONGEST`] where the error has not fallen to [`GAIN`] of
-/// that at the last such steps.
-const LONG: [usize; 2] = [4, 4];
-const LONGEST: [usize; 2] = [128, 32];
-const GAIN: f64 = 0.7;
+/// Such steps, and the rounds of each. Both are doubled at each further failure, up to [`LONGEST`].
+const LONG: [usize; 2] = [4, 8];
+const LONGEST: [usize; 2] = [256, 32];
+
+/// Ratio to the smallest error so far below which an error is a new smallest one.
+const GAIN: f64 = 0.9;
 
 /// Part of its first error to which such a step is solved.
 const INNER: f64 = 0.1;
+
+/// Factor of the maximum number of iterations. Steps with the storage modulus are many and small where the material
+/// loses much, and they converge.
+const ITERATIONS: usize = 10;
 
 /// Rounds without progress after which the iteration gives up.
 const PATIENCE: usize = 200;
@@ -78,7 +80,7 @@ impl<'a> SlidingDescent<'a> {
     /// Iterates until the goal is reached, or cannot be reached.
     pub(crate) fn run(&mut self, goal: Goal, watch: &DescentObserver<'_>) -> Outcome {
         let mut sums = self.descent.start();
-        let mut fallback = Fallback::new();
+        let mut fallback = Fallback::default();
         let (mut smallest, mut rounds) = (f64::INFINITY, 0);
         loop {
             let mut error = self.descent.error(&sums);
@@ -94,17 +96,18 @@ impl<'a> SlidingDescent<'a> {
                     return outcome;
                 }
             }
-            (smallest, rounds) = if error < 0.9 * smallest { (error, 0) } else { (smallest, rounds + 1) };
-            if self.descent.info.iterations >= goal.max_iterations || rounds > PATIENCE {
+            (smallest, rounds) = if error < GAIN * smallest { (error, 0) } else { (smallest, rounds + 1) };
+            if rounds == 0 {
+                fallback.failures = 0;
+            }
+            let most = ITERATIONS * goal.max_iterations;
+            if self.descent.info.iterations >= most || rounds > PATIENCE || error.is_nan() {
                 sums = self.descent.refresh();
                 return self.descent.unfinished(goal, &sums);
             }
             let next = match self.newton_step(&sums, watch.observer) {
-                Ok(None) => self.storage_rounds(&sums, &mut fallback, watch.observer),
-                Ok(Some(next)) => {
-                    fallback.failures = 0;
-                    Ok(next)
-                }
+                Ok(None) => self.storage_rounds(&sums, &mut fallback, (most, watch.observer)),
+                Ok(Some(next)) => Ok(next),
                 Err(stopped) => Err(stopped),
             };
             let Ok(next) = next else {
@@ -161,7 +164,8 @@ impl<'a> SlidingDescent<'a> {
         let mut system = LinearSystem { operator, elements: &elements, fixed_mean: set.fixed_mean };
         // A step that gains little is limited by the choice of active elements, not by its accuracy.
         let reduction = (0.5 * self.last_ratio).clamp(REDUCTIONS[0], REDUCTIONS[1]);
-        let (step, iterations) = system.solve(residual, gmres::Goal { reduction, directions: DIRECTIONS }, observer)?;
+        let directions = gmres::directions(elements.len(), descent.pressure.len());
+        let (step, iterations) = system.solve(residual, gmres::Goal { reduction, directions }, observer)?;
         elements.scatter(&step, &mut descent.directions.direction);
         self.work.gmres_iterations += iterations;
         descent.info.iterations += iterations.max(1);
@@ -173,22 +177,26 @@ impl<'a> SlidingDescent<'a> {
     /// Steps with the storage modulus.
     ///
     /// A step solves the contact of the elastic solid under heights that make up for what the operators differ in. Its
-    /// gap is that of the present pressure, and follows the elastic solid. The first step after a Newton step takes one
-    /// round. Newton steps that fail again and again are followed by more and more steps, solved more and more exactly.
+    /// gap is that of the present pressure, and follows the elastic solid. The first of them take one round each, which
+    /// mostly is enough for the next Newton step. Newton steps that fail again and again are followed by more and more
+    /// steps, solved well.
     fn storage_rounds(
         &mut self,
         sums: &GapSums,
         fallback: &mut Fallback,
-        observer: &dyn Observer,
+        (most_iterations, observer): (usize, &dyn Observer),
     ) -> Result<GapSums, Stopped> {
-        fallback.fail(self.energy_error(sums));
-        let mut sums = *sums;
-        for _ in 0..fallback.steps {
+        let ([steps, rounds], mut sums) = (fallback.next(), *sums);
+        let steps_of_round = if self.storage.keeps_steps() { 2 } else { 1 };
+        for _ in 0..steps {
+            if self.descent.info.iterations >= most_iterations {
+                break;
+            }
             let wanted = INNER * self.descent.error(&sums);
             self.exchange();
-            for _ in 0..fallback.rounds {
+            for _ in 0..rounds {
                 self.work.storage_rounds += 1;
-                let round = self.descent.round(1, &sums, observer);
+                let round = self.descent.round(steps_of_round, &sums, observer);
                 if round.is_err() {
                     self.exchange();
                 }
@@ -205,39 +213,32 @@ impl<'a> SlidingDescent<'a> {
     }
 
     /// Exchanges the operator for that with the storage modulus, or back.
+    ///
+    /// What the operators differ in is a part of the gap that stays.
     fn exchange(&mut self) {
         std::mem::swap(&mut self.descent.operators.corrections, &mut self.storage);
+        self.descent.follows = match self.descent.follows {
+            Follows::Pressure => Follows::Changes,
+            Follows::Changes => Follows::Pressure,
+        };
         self.descent.start_afresh();
     }
 }
 
 /// What follows a failed Newton step.
+#[derive(Default)]
 struct Fallback {
-    /// Failed Newton steps in a row.
-    failures: usize,
-    /// Steps with the storage modulus, and the rounds that each of them may take.
-    steps: usize,
-    rounds: usize,
-    /// The energy error at the last long sequence of steps.
-    error: f64,
+    /// Failed Newton steps since the error last was the smallest.
+    failures: u32,
 }
 
 impl Fallback {
-    fn new() -> Self {
-        Self { failures: 0, steps: 1, rounds: 1, error: f64::INFINITY }
-    }
-
-    /// Notes a failed step at this energy error.
-    fn fail(&mut self, error: f64) {
+    /// Number of steps with the storage modulus, and of the rounds that each of them may take.
+    fn next(&mut self) -> [usize; 2] {
         self.failures += 1;
-        if self.failures < FAILURES {
-            (self.steps, self.rounds) = (1, 1);
-            return;
+        match self.failures.checked_sub(FAILURES) {
+            None => [1, 1],
+            Some(more) => [0, 1].map(|i| (LONG[i] << more.min(8)).min(LONGEST[i])),
         }
-        let has_gained = error < GAIN * self.error;
-        let [steps, rounds] =
-            if has_gained { LONG } else { [self.steps.max(LONG[0] / 2) * 2, self.rounds.max(LONG[1] / 2) * 2] };
-        (self.steps, self.rounds) = (steps.min(LONGEST[0]), rounds.min(LONGEST[1]));
-        self.error = self.error.min(error);
     }
 }

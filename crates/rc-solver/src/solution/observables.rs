@@ -46,9 +46,23 @@ impl Observables {
     ///
     /// It passes over the fields once, or twice with a hardness. `bias` shifts the edges of contacts. The pressure is
     /// at most the `hardness`.
-    pub(crate) fn of(solution: &GridSolution, hardness: f64, bias: EdgeBias, boundary: Boundary) -> Self {
+    ///
+    /// Under a sliding surface, edges have the first of `moduli`. The others show how far the area depends on them.
+    pub(crate) fn of(
+        solution: &GridSolution,
+        hardness: f64,
+        bias: EdgeBias,
+        boundary: Boundary,
+        moduli: Option<[[f64; 2]; 3]>,
+    ) -> Self {
         let fields = [&solution.pressure, &solution.gap];
-        let area = ContactArea::of_hard(fields, hardness, bias, boundary);
+        let area = match moduli {
+            None => ContactArea::of_hard(fields, hardness, bias, boundary),
+            Some(moduli) => {
+                let of_moduli = |moduli| ContactArea::with_moduli(fields, hardness, bias, moduli);
+                ContactArea::of_moduli(moduli.map(of_moduli))
+            }
+        };
         let plastic = hardness.is_finite().then(|| PlasticEdges::of(fields, hardness, bias, boundary));
         let pressure = &solution.pressure;
         let rms = parallel::rms(pressure.values(), pressure.grid().nx());
@@ -111,6 +125,13 @@ impl Observables {
             plastic: self.plastic.map(|plastic| PlasticContact { error: plastic.error.hypot(grown), ..plastic }),
             ..self
         }
+    }
+
+    /// The part of the error of the penetration at a free border that is none of the mean gap.
+    ///
+    /// In contact, the patch is displaced with the penetration, so that only the gap beside contacts has the error.
+    pub(crate) fn hidden_depth_error(&self, info: &SolveInfo) -> f64 {
+        depth_error_at_border(info, &self.area) * (1.0 - gap_per_depth(&self.area).powi(2)).sqrt()
     }
 
     /// Adds to the error bars the errors from the tolerance of the solve.
@@ -218,6 +239,17 @@ const GAP_OVER_AREA: f64 = 3.0;
 /// patch in contact: errors of edges inside the patch have the other sign. The measured values are in docs/constants.md.
 const GAP_AT_BORDER: [f64; 2] = [0.4, 0.3];
 
+/// 95 % error of the penetration from singular pressure at free borders.
+fn depth_error_at_border(info: &SolveInfo, area: &ContactArea) -> f64 {
+    let part = GAP_AT_BORDER[0] + GAP_AT_BORDER[1] * area.fraction;
+    part * area.rim.at_border / info.mean_pressure.max(f64::MIN_POSITIVE)
+}
+
+/// Largest change of the mean gap with the penetration where contact reaches a free border.
+fn gap_per_depth(area: &ContactArea) -> f64 {
+    (1.0 - area.fraction).clamp(0.0, 1.0)
+}
+
 /// Estimated error of the mean gap. It is 0 without contact.
 fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f64 {
     let (rim, mean_pressure) = (area.rim, info.mean_pressure.max(f64::MIN_POSITIVE));
@@ -229,7 +261,8 @@ fn mean_gap_error(info: &SolveInfo, area: &ContactArea, rms_pressure: f64) -> f6
         rim.scatter_of_sharp,
         rim.hidden_gap,
         GAP_OVER_AREA * area.relative_error().min(1.0).powi(2) * info.penetration.abs(),
-        (GAP_AT_BORDER[0] + GAP_AT_BORDER[1] * area.fraction) * (rim.at_border + rim.at_jumps) / mean_pressure,
+        gap_per_depth(area) * depth_error_at_border(info, area),
+        (GAP_AT_BORDER[0] + GAP_AT_BORDER[1] * area.fraction) * rim.at_jumps / mean_pressure,
         // The overlap that the certificate has found.
         info.certificate.penetration * info.penetration_full_contact,
     ];

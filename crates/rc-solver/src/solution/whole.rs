@@ -161,7 +161,8 @@ impl<'a> Solution<'a> {
     /// Estimated discretisation error of the penetration at this load, in λ.
     ///
     /// It is the sum of [`Solution::summit_excess`], by which a penetration from the highest sample is too small, and of
-    /// [`Observables::mean_gap_error`]. Under a given penetration, the load has the error that this penetration causes
+    /// [`Observables::mean_gap_error`]; where contact reaches a free border, also of the error of the depth that the gap
+    /// does not show. Under a given penetration, the load has the error that this penetration causes
     /// ([`Solution::mean_pressure_error`]).
     #[must_use]
     pub fn penetration_error(&self) -> f64 {
@@ -196,7 +197,8 @@ impl<'a> Solution<'a> {
     fn with_penetration_error(&self) -> &(Observables, f64) {
         self.observables.get_or_init(|| {
             let observables = self.solved.observables();
-            let error = self.summit.excess + observables.mean_gap_error;
+            let of_depth = observables.mean_gap_error.hypot(observables.hidden_depth_error(self.info()));
+            let error = self.summit.excess + of_depth;
             match self.how.asked.control {
                 Control::MeanPressure(_) => (observables, error),
                 Control::Penetration(_) => {
@@ -232,7 +234,9 @@ impl<'a> Solution<'a> {
     #[must_use]
     pub fn conductance_error(&self) -> f64 {
         let of_solve = if self.status() == Status::NotConverged { ROUGH_CONDUCTANCE } else { CONDUCTANCE };
-        self.conductance() * self.area().relative_error_of_width().hypot(of_solve)
+        let (area, conductance) = (self.area(), self.conductance());
+        let at_border = area.relative_error_at_border(conductance, self.info().mean_pressure);
+        conductance * area.relative_error_of_width().hypot(of_solve).hypot(at_border)
     }
 
     /// Passes the elements of [`Solution::elements`] to `take`, in order.

@@ -154,12 +154,7 @@ impl<'a> Choice<'a, '_> {
 
     /// A method that stores fields on the whole grid, if they fit into memory.
     fn on_grid(&self, method: Method) -> Result<ChosenMethod<'a>, SolveError> {
-        check_uniform(
-            self.problem.heights.grid(),
-            bytes_per_element(self.problem.boundary()),
-            self.params.memory_limit,
-            method,
-        )?;
+        check_uniform(self.problem.heights.grid(), bytes_per_element(self.problem), self.params.memory_limit, method)?;
         Ok(if method == Method::GaussSeidel { ChosenMethod::GaussSeidel } else { ChosenMethod::Uniform })
     }
 }

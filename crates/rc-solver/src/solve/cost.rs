@@ -80,7 +80,7 @@ impl Cost {
                 Self {
                     area_fraction: None,
                     elements: Some(elements),
-                    bytes: Some(elements * bytes_per_element(boundary) as f64),
+                    bytes: Some(elements * bytes_per_element(&plan.problem) as f64),
                     cpu_seconds: Some(seconds(per_element * elements)),
                 }
             }

@@ -4,12 +4,17 @@ use rc_core::{Boundary, Grid};
 
 use crate::levels::uniform::FREE_BYTES_PER_ELEMENT;
 use crate::levels::uniform::UNIFORM_BYTES_PER_ELEMENT;
+use crate::problem::contact_problem::ContactProblem;
 use crate::problem::method::Method;
 use crate::solve::error::SolveError;
 
+/// Bytes for each element under a sliding surface: 110 for vectors, tables and transforms, the rest for GMRES.
+const SLIDING_BYTES_PER_ELEMENT: u64 = 200;
+
 /// Bytes per element of a method that stores fields on the whole grid.
-pub(super) fn bytes_per_element(boundary: Boundary) -> u64 {
-    match boundary {
+pub(super) fn bytes_per_element(problem: &ContactProblem<'_>) -> u64 {
+    match problem.boundary() {
+        Boundary::Periodic if problem.kernel.get().sliding_velocity().is_some() => SLIDING_BYTES_PER_ELEMENT,
         Boundary::Periodic => UNIFORM_BYTES_PER_ELEMENT,
         Boundary::Free => FREE_BYTES_PER_ELEMENT,
     }

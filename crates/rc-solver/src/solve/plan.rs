@@ -161,7 +161,7 @@ fn by_adaptive<'a>(
 ) -> Result<Tried<'a>, SolveError> {
     let fits_beside = |bytes: f64| {
         let limit = params.memory_limit.map(|limit| limit.saturating_sub(bytes as u64));
-        check_uniform(problem.heights.grid(), bytes_per_element(problem.boundary()), limit, Method::Uniform)
+        check_uniform(problem.heights.grid(), bytes_per_element(problem), limit, Method::Uniform)
     };
     let uniform_fits = fits_beside(0.0);
     // If the method may not follow memory, a load is solved in the same way on every machine, or refused.

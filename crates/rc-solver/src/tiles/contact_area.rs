@@ -3,11 +3,12 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use rc_core::{Boundary, EdgeBias, Grid};
+use rc_core::{Boundary, EdgeBias, Grid, SlidingCompliance};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet};
 
 use crate::solution::contact_area::area::ContactArea;
 use crate::solution::contact_area::edge_sums::EdgeSums;
+use crate::solution::contact_area::moduli::edge_moduli;
 use crate::solution::contact_area::plastic::{PlasticEdges, left};
 use crate::tiles::mesh::{Mesh, Surroundings};
 
@@ -28,6 +29,8 @@ pub(crate) struct Values<'a> {
     pub(crate) hardness: f64,
     /// The shift of contact edges.
     pub(crate) bias: EdgeBias,
+    /// Moduli of edges across x and across y, in E*.
+    pub(crate) moduli: [f64; 2],
 }
 
 impl Values<'_> {
@@ -36,9 +39,18 @@ impl Values<'_> {
         ContactArea::from_sums(&self.edge_sums(|at| at), finest, self.bias)
     }
 
+    /// The contact area under a sliding surface, with the moduli that `compliance` gives its edges.
+    pub(crate) fn sliding_area(&self, finest: Grid, compliance: &SlidingCompliance) -> ContactArea {
+        let at_rest = self.contact_area(finest);
+        // Each contact from edge to edge has two of the edges of an axis.
+        let chord = 4.0 * at_rest.cells * finest.len() as f64 / at_rest.perimeter_edges.max(1) as f64;
+        let areas = edge_moduli(chord, finest.spacing().x, |q| compliance.at(q).norm());
+        ContactArea::of_moduli(areas.map(|moduli| Self { moduli, ..*self }.contact_area(finest)))
+    }
+
     /// The plastic part of the contact. `None` without a hardness.
     pub(crate) fn plastic_edges(&self, finest: Grid) -> Option<PlasticEdges> {
-        let Self { mesh, pressure, gap, contact_gap, hardness, bias } = *self;
+        let Self { mesh, pressure, gap, contact_gap, hardness, bias, .. } = *self;
         if hardness.is_infinite() {
             return None;
         }
@@ -72,7 +84,8 @@ impl Values<'_> {
         [pressures, gaps]: &[Surroundings<'_>; 2],
         seen: &(impl Fn([f64; 2]) -> [f64; 2] + Sync),
     ) -> EdgeSums {
-        let Self { mesh, pressure, contact_gap, hardness, .. } = *self;
+        let Self { mesh, pressure, contact_gap, hardness, moduli, .. } = *self;
+        let between = (moduli[0] * moduli[1]).sqrt();
         let (side, tiles) = (mesh.side(coarser), &mesh.levels()[coarser]);
         let is_free = tiles.boundary() == Boundary::Free;
         let add_tile = |sums: &mut EdgeSums, tile: usize, place: [u32; 2]| {
@@ -91,7 +104,12 @@ impl Values<'_> {
                 if seen([pressure[y][x], 0.0])[0] > 0.0 {
                     let at = |dx: isize, dy: isize| {
                         let (x, y) = patch.place(x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
-                        seen([pressure[y][x], gap[y][x] - contact_gap])
+                        let modulus = match (dx, dy) {
+                            (_, 0) => moduli[0],
+                            (0, _) => moduli[1],
+                            _ => between,
+                        };
+                        seen([pressure[y][x], modulus * (gap[y][x] - contact_gap)])
                     };
                     let elements = &pressures.elements;
                     sums.add([side; 2], hardness, &at, &|dx, dy| {

@@ -39,7 +39,19 @@ impl SlidingContact<'_> {
         let along = if velocity.x < 0.0 { -1.0 } else { 1.0 };
         let [x, y] = self.of_heights();
         let (slope, loss_tangent) = self.of_waves()?;
-        Some(Sums { of_heights: [along * x, along * y], of_displacement: self.of_displacement()?, slope, loss_tangent })
+        Some(Sums {
+            of_heights: [along * x, along * y],
+            of_displacement: self.of_displacement()?,
+            slope,
+            missed: 0.0,
+            loss_tangent,
+        })
+    }
+
+    /// The force against the velocity, -⟨p ∂h⟩ along it.
+    pub(crate) fn force(&self) -> f64 {
+        let velocity = self.kernel.sliding_velocity().unwrap_or_default();
+        self.of_heights()[0] * if velocity.x < 0.0 { -1.0 } else { 1.0 }
     }
 
     /// -⟨p ∂h⟩ along x and y.

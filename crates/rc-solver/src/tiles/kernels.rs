@@ -4,7 +4,7 @@
 
 use std::sync::OnceLock;
 
-use rc_core::SlidingModes;
+use rc_core::{SlidingCompliance, SlidingModes};
 use rc_kernel::{ScaleSplit, SplitParams};
 
 use crate::parallel::made;
@@ -57,6 +57,11 @@ impl Kernels {
     /// The base grid.
     pub(crate) fn base(&self) -> Base {
         self.solid.base()
+    }
+
+    /// What a sliding surface makes of the solid, with lengths in λ. `None` at rest.
+    pub(crate) fn sliding(&self) -> Option<&SlidingCompliance> {
+        self.solid.sliding()
     }
 
     /// Whether a surface slides over the solid.

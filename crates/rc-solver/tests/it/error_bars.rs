@@ -5,8 +5,9 @@
 use std::f64::consts::TAU;
 
 use rc_core::testing::quasi_random;
-use rc_core::{DVec2, Field, Grid};
-use rc_solver::{Control, Method, SolveParams, solve};
+use rc_core::{DVec2, Field, Grid, Silent};
+use rc_kernel::FreeLove;
+use rc_solver::{ContactProblem, Control, Method, SolveParams, solve};
 
 /// Waves up to four per cell with the amplitudes of a self-affine surface, and moved.
 ///
@@ -62,4 +63,21 @@ fn the_corrected_rms_pressure_is_closer_to_that_of_a_fine_grid() {
         corrected += (coarse.rms_pressure_corrected / exact - 1.0) / 6.0;
     }
     assert!(corrected.abs() < 0.8 * raw.abs(), "off by {corrected:e} with the correction, {raw:e} without");
+}
+
+/// The stiffness of a square punch of side 1 is π times its capacitance, 0.366790 in units of its side. In full contact
+/// no gap is beside it.
+#[test]
+fn the_bar_of_a_punch_holds_its_conductance() {
+    let params = SolveParams::default().by(Method::Uniform);
+    for n in [16, 64] {
+        let flat = Field::zeros(Grid::square(n).expect("a grid"));
+        let problem = ContactProblem::new(&flat, Control::MeanPressure(1e-3)).with_kernel(&FreeLove);
+        let solution = problem.solve(&params, &Silent).expect("solvable");
+        let (found, bar) = (solution.conductance(), solution.conductance_error());
+        let off = (found - 0.366_790 * std::f64::consts::PI).abs();
+        assert!(off < bar && bar < 2.0 * off, "{n}: {found} ± {bar}, off by {off}");
+        assert!(solution.observables().mean_gap_error < 1e-12, "{:?}", solution.observables());
+        assert!(solution.penetration_error() > 0.0);
+    }
 }

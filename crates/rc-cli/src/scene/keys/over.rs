@@ -49,7 +49,8 @@ impl ContactKeys {
     /// These keys laid over `lower`.
     ///
     /// A key given here removes its alternatives in `lower`. These are `pressure`, `penetration` and `force`,
-    /// `tolerance` and `energy_tolerance`, and `e_star` and the moduli and ratios that it contains.
+    /// `tolerance` and `energy_tolerance`, `e_star` and the moduli and ratios that it contains, and the materials that
+    /// relax.
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
         if self.n_loads() > 0 {
@@ -60,16 +61,29 @@ impl ContactKeys {
         } else if self.young.is_some() || self.poisson.is_some() {
             lower.e_star = None;
         }
+        if self.prony.is_some() || self.fractional.is_some() {
+            lower = lower.elastic();
+        } else if self.glassy_ratio.is_some() || self.relaxation_time.is_some() {
+            (lower.prony, lower.fractional) = (None, None);
+        }
         if self.tolerance.is_some() || self.energy_tolerance.is_some() {
             (lower.tolerance, lower.energy_tolerance) = (None, None);
         }
         or_lower!(self, lower, {
-            young, poisson, young2, poisson2, e_star, pressure, penetration, force, hardness, conductivity, kernel, boundary, layer_thickness, layer_poisson, method, border_level,
+            young, poisson, young2, poisson2, e_star, pressure, penetration, force, hardness, speed, direction, prony, glassy_ratio, relaxation_time, fractional, conductivity, kernel, boundary, layer_thickness, layer_poisson, method, border_level,
             energy_tolerance, tolerance, area_error, viscosity, pressure_drop, output_grid, precision
         });
         self.leakage |= lower.leakage;
         self.elements |= lower.elements;
         self
+    }
+}
+
+impl ContactKeys {
+    /// These keys without a material that relaxes.
+    #[must_use]
+    pub(crate) fn elastic(self) -> Self {
+        Self { prony: None, glassy_ratio: None, relaxation_time: None, fractional: None, ..self }
     }
 }
 

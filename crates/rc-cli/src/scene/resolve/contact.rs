@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use rc_comm::Ranks;
 use rc_core::{Boundary, Elasticity, Kernel, PeriodicCell, UnitError, Units};
-use rc_kernel::{FreeLove, Layer, Love, LoveLayer, Spectral, SpectralLayer};
+use rc_kernel::{FreeLove, Layer, Love, LoveLayer, Spectral, SpectralLayer, Viscoelastic};
 use rc_solver::{Control, Feature, SolveParams, Tolerance};
 
 use super::checks::{missing, positive};
-use super::elastic_layer;
+use super::sliding::SlidingSolid;
+use super::{elastic_layer, sliding};
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
 use crate::scene::keys::{ContactKeys, KernelName};
@@ -30,6 +31,10 @@ pub struct ContactSetup {
     pub boundary: Boundary,
     /// The layer in place of the half-space, if there is one.
     pub layer: Option<Layer>,
+    /// Sliding over a material that relaxes, if the surface slides.
+    pub sliding: Option<SlidingSolid>,
+    /// Ratio of the load of this elastic contact to the load under which a solid has crept; `None` without creep.
+    pub creep: Option<f64>,
     /// Method, tolerance and limits, without the available memory.
     pub params: SolveParams,
     /// The resolved keys, for `scene.toml`.
@@ -57,16 +62,29 @@ impl ContactSetup {
     pub fn kernel(&self) -> Result<Arc<dyn Kernel + Send + Sync>, CliError> {
         Ok(match (self.kernel, self.layer) {
             (KernelName::Love, None) if self.boundary == Boundary::Free => Arc::new(FreeLove),
-            (KernelName::Love, None) => Arc::new(Love),
-            (KernelName::Spectral, None) => Arc::new(Spectral),
-            (KernelName::Love, Some(layer)) => Arc::new(LoveLayer(layer)),
-            (KernelName::Spectral, Some(layer)) => Arc::new(SpectralLayer(layer)),
+            (KernelName::Love, None) => self.under_sliding(Love),
+            (KernelName::Spectral, None) => self.under_sliding(Spectral),
+            (KernelName::Love, Some(layer)) => self.under_sliding(LoveLayer(layer)),
+            (KernelName::Spectral, Some(layer)) => self.under_sliding(SpectralLayer(layer)),
             (KernelName::Own, _) => {
                 return Err(CliError::input(
                     "kernel: 'own' stands for a function of a Python program, and only that program can solve with it; give love or spectral",
                 ));
             }
         })
+    }
+}
+
+impl ContactSetup {
+    /// The kernel of the material under the surface that slides, or the kernel itself at rest.
+    fn under_sliding<K: Kernel + Clone + Send + Sync + 'static>(&self, relaxed: K) -> Arc<dyn Kernel + Send + Sync> {
+        match self.sliding.as_ref().filter(|sliding| sliding.speed > 0.0) {
+            Some(sliding) => {
+                let velocity = sliding.velocity(self.units.cell().side());
+                Arc::new(Viscoelastic::new(relaxed, &sliding.material, velocity))
+            }
+            None => Arc::new(relaxed),
+        }
     }
 }
 
@@ -89,7 +107,7 @@ pub fn kernel(name: KernelName) -> Option<&'static dyn Kernel> {
 pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, CliError> {
     let keys = elastic_layer::with_poisson(keys)?;
     let defaults = ContactKeys { pressure: None, method: None, ..file::example().contact };
-    let keys = film(keys.over(defaults))?;
+    let keys = sliding::with_terms(film(keys.over(defaults))?)?;
     let units = Units::new(cell, elasticity(&keys)?);
     let control = control(&keys, units)?;
     let hardness = hardness(&keys, (control, units))?;
@@ -98,14 +116,28 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     features::check(&keys, [Feature::Sweep])?;
     let boundary = keys.boundary.unwrap_or_default();
     let layer = elastic_layer::layer(&keys, cell.side())?;
+    let sliding = sliding::solid(&keys)?;
     let params = SolveParams {
         tolerance: tolerance(&keys)?,
         method: keys.method,
         border_level: keys.border_level.unwrap_or(0),
         ..SolveParams::certified()
     };
-    let place = Place::default();
-    Ok(ContactSetup { units, control, hardness, kernel, boundary, layer, params, keys, place, grid_is_chosen: false })
+    let (place, grid_is_chosen, creep) = (Place::default(), false, None);
+    Ok(ContactSetup {
+        units,
+        control,
+        hardness,
+        kernel,
+        boundary,
+        layer,
+        sliding,
+        creep,
+        params,
+        keys,
+        place,
+        grid_is_chosen,
+    })
 }
 
 fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
@@ -227,6 +259,15 @@ mod tests {
         contact(keys, PeriodicCell::new(1.0).expect("a cell"))
     }
 
+    /// Fails unless the keys in each text are refused with a message that begins with the name of the key.
+    fn assert_named(cases: &[(&str, &str)]) {
+        for (text, key) in cases {
+            let keys = ContactKeys { pressure: Some(1.0), ..keys(text) };
+            let error = resolved(keys).expect_err(text).to_string();
+            assert!(error.starts_with(&format!("{key}:")), "{text}: {error}");
+        }
+    }
+
     #[test]
     fn the_control_is_never_assumed() {
         let error = resolved(ContactKeys::default()).expect_err("no control").to_string();
@@ -271,11 +312,36 @@ mod tests {
             ("layer_thickness = 1e-3\nborder_level = 1", "border_level"),
             ("layer_thickness = 1e-3\nkernel = \"own\"", "layer_thickness"),
         ];
-        for (text, key) in cases {
-            let keys = ContactKeys { pressure: Some(1.0), ..keys(text) };
-            let error = resolved(keys).expect_err(text).to_string();
-            assert!(error.starts_with(&format!("{key}:")), "{text}: {error}");
-        }
+        assert_named(&cases);
+    }
+
+    #[test]
+    fn each_bad_value_of_a_sliding_contact_is_named_with_its_key() {
+        assert_named(&[
+            ("speed = 1.0", "speed"),
+            ("direction = 90.0", "direction"),
+            ("prony = [[1.0, 1.0]]", "prony"),
+            ("glassy_ratio = 10.0\nrelaxation_time = 1.0", "glassy_ratio"),
+            ("speed = 1.0\nglassy_ratio = 10.0", "relaxation_time"),
+            ("speed = 1.0\nrelaxation_time = 1.0", "glassy_ratio"),
+            ("speed = 1.0\nglassy_ratio = 1.0\nrelaxation_time = 1.0", "glassy_ratio"),
+            ("speed = 1.0\nglassy_ratio = 2.0\nrelaxation_time = 0.0", "relaxation_time"),
+            ("speed = 1.0\nprony = []", "prony"),
+            ("speed = 1.0\nprony = [[1.0, 1.0], [0.0, 1.0]]", "prony"),
+            ("speed = 1.0\nprony = [[1.0, -1.0]]", "prony"),
+            ("speed = 1.0\nprony = [[1.0, 1.0]]\nglassy_ratio = 10.0\nrelaxation_time = 1.0", "prony"),
+            ("speed = 1.0\nfractional = \"0.0,10,1\"", "fractional"),
+            ("speed = 1.0\nfractional = { alpha = 0.2, glassy_ratio = 0.5, tau = 1.0 }", "fractional"),
+            ("speed = -1.0\nprony = [[1.0, 1.0]]", "speed"),
+            ("speed = inf\nprony = [[1.0, 1.0]]", "speed"),
+            ("speed = 1.0\nprony = [[1.0, 1.0]]\ndirection = nan", "direction"),
+            ("speed = 1.0\nprony = [[1.0, 1.0]]\nboundary = \"free\"", "speed"),
+            ("speed = 1.0\nprony = [[1.0, 1.0]]\nmethod = \"adaptive\"", "method"),
+            ("speed = 1.0\nprony = [[1.0, 1.0]]\nmethod = \"gauss-seidel\"", "method"),
+            ("speed = 1.0\nprony = [[1.0, 1.0]]\nkernel = \"own\"", "speed"),
+            ("speed = 1.0\nprony = [[1.0, 1.0]]\nborder_level = 1", "border_level"),
+            ("speed = 1.0\nprony = [[1.0, 1.0]]\nyoung2 = 1e9\npoisson2 = 0.3", "young2"),
+        ]);
     }
 
     #[test]

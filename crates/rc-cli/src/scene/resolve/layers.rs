@@ -1,6 +1,6 @@
 //! Flags laid over a scene file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rc_heights::{FormatError, ReadError};
 
@@ -20,7 +20,7 @@ use crate::scene::keys::{ContactKeys, Scene, SurfaceKeys};
 pub fn layers(file: Option<&Path>, flags: Scene) -> Result<Scene, CliError> {
     check_alternatives(&flags).map_err(CliError::input)?;
     let mut scene = match file {
-        None => flags,
+        None => over_folder(flags)?,
         Some(path) => {
             let lower = lower_layer(path)?;
             check_alternatives(&lower).map_err(|message| CliError::in_file(path, message))?;
@@ -35,6 +35,15 @@ pub fn layers(file: Option<&Path>, flags: Scene) -> Result<Scene, CliError> {
     }
     scene.surface.read_limit = scene.run.memory_limit;
     Ok(scene)
+}
+
+/// The flags, over the surface of the folder that `heights` names, if it is one of `rc surface`, `rc prepare` or `rc solve`.
+fn over_folder(flags: Scene) -> Result<Scene, CliError> {
+    let is_folder = |path: &&PathBuf| path.join(SCENE_FILE).is_file();
+    let Some(folder) = flags.surface.heights.as_ref().filter(is_folder) else { return Ok(flags) };
+    let surface = lower_layer(folder)?.surface;
+    let flags = Scene { surface: SurfaceKeys { heights: None, ..flags.surface }, ..flags };
+    Ok(flags.over(Scene { surface, ..Scene::default() }))
 }
 
 /// The scene that a path names: a scene file, a folder with one, or the file of a height map.
@@ -58,7 +67,7 @@ fn lower_layer(path: &Path) -> Result<Scene, CliError> {
             Ok(Scene { surface, ..Scene::default() })
         }
         // A scene may have any name.
-        Err(ReadError { problem: FormatError::Unknown | FormatError::Unreadable(_), .. }) => file::read(path),
+        Err(ReadError { problem: FormatError::Unknown, .. }) => file::read(path),
         Err(error) => Err(error.into()),
     }
 }

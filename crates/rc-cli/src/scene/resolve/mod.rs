@@ -10,6 +10,7 @@ mod layers;
 mod like;
 mod map;
 mod realisation;
+pub(crate) mod sliding;
 mod surface;
 
 pub use checks::checked_grid;
@@ -18,4 +19,5 @@ pub use contact::{ContactSetup, Place, contact, kernel};
 pub(crate) use elastic_layer::check_thickness;
 pub use layers::layers;
 pub use map::{check_cell_and_material, check_size, check_size_and_material};
+pub use sliding::SlidingSolid;
 pub use surface::{surface, surface_in_cell};

@@ -142,6 +142,11 @@ const SCATTER_OF_SHARP: f64 = 0.5;
 /// change of the area with this depth ([`ContactArea::per_depth`]).
 const SHIFT_AT_BORDER: [f64; 2] = [0.3, 0.5];
 
+/// Error of the stiffness of a contact that reaches a free border, in its [`ContactArea::relative_error_at_border`].
+///
+/// That of a square flat punch is 0.29, on every mesh (test `the_bar_of_a_punch_holds_its_conductance`).
+const STIFFNESS_AT_BORDER: f64 = 0.4;
+
 /// 95 % error of the missing squares inside contacts from waves that the mesh hardly resolves.
 ///
 /// It is relative to [`EdgeBias::per_difference`]. The ratio of squared second differences to squared differences is at
@@ -179,6 +184,11 @@ const ERROR_OF_SOLVE: f64 = 1.0;
 /// bends. The excess is 0 along the elements and at 45 degrees to them, and at most 0.005 at 18 to 27 degrees, for any
 /// size of the elements.
 const EXCESS_LENGTH: f64 = 0.0021;
+
+/// 95 % error of the area under a sliding surface, for each unit of its change by other moduli at edges.
+///
+/// `docs/accuracy.md` has its measurement.
+const MODULI: f64 = 4.0;
 
 impl ContactArea {
     /// The contact area of `pressure` and `gap` on a uniform grid.
@@ -218,6 +228,33 @@ impl ContactArea {
             add_borders(&mut sums, pressure, hardness);
         }
         Self::from_sums(&[sums], grid, bias)
+    }
+
+    /// [`ContactArea::of_hard`] on a periodic cell, with moduli M of edges across x and across y in place of E* = 1.
+    pub(crate) fn with_moduli(fields: [&Field; 2], hardness: f64, bias: EdgeBias, moduli: [f64; 2]) -> Self {
+        let grid = fields[0].grid();
+        let values = fields.map(Field::values);
+        let between = (moduli[0] * moduli[1]).sqrt();
+        let at = |place: [usize; 2]| {
+            let around = around(values, [grid.nx(), grid.ny()], place, Boundary::Periodic);
+            move |dx: isize, dy: isize| {
+                let [pressure, gap] = around(dx, dy);
+                let modulus = match (dx, dy) {
+                    (_, 0) => moduli[0],
+                    (0, _) => moduli[1],
+                    _ => between,
+                };
+                [pressure, modulus * gap]
+            }
+        };
+        let sums = sums_of_rows((grid, Boundary::Periodic), hardness, |i| values[0][i] > 0.0, at);
+        Self::from_sums(&[sums], grid, bias)
+    }
+
+    /// The first area, with an error from what other moduli of edges would make of it.
+    pub(crate) fn of_moduli([best, others @ ..]: [Self; 3]) -> Self {
+        let off = others.iter().map(|other| (other.fraction - best.fraction).abs()).fold(0.0, f64::max);
+        Self { error: best.error.hypot(MODULI * off).min(1.0), ..best }
     }
 
     /// The contact area from sums over elements of one size each.
@@ -306,16 +343,29 @@ impl ContactArea {
     /// Relative error of the width of contact spots, which their conductance is proportional to.
     ///
     /// It is the width by which elements miss the edges, in units of the width 2 A/P of the spots and 2 (1 - A)/P of the
-    /// places between them, which constrict the current where they are narrow.
+    /// places between them, which constrict the current where they are narrow. Where contact reaches a free border, the
+    /// current spreads beyond it, and full contact conducts as well as the whole patch.
     pub(crate) fn relative_error_of_width(&self) -> f64 {
         if self.fraction == 0.0 {
             return 0.0;
         }
-        let free = (1.0 - self.fraction).max(f64::MIN_POSITIVE);
+        let free = if self.rim.at_border > 0.0 { 1.0 } else { (1.0 - self.fraction).max(f64::MIN_POSITIVE) };
         let sharp = self.rim.part_of_sharp;
         let of_edge = WIDTH_AT_EDGE * (1.0 - sharp) + WIDTH_AT_SHARP_EDGE * sharp;
         let edges = of_edge * self.rim.area / (2.0 * self.fraction);
         ((WIDTH_OF_AREA * self.relative_error()).hypot(edges) / free).min(1.0)
+    }
+
+    /// Relative error of a `stiffness` (E*/λ) from the singular pressure at a free border, under a mean pressure (E*).
+    ///
+    /// The depth of the contact has the error [`Rim::at_border`] over the pressure, and the stiffness is a pressure over a
+    /// depth.
+    pub(crate) fn relative_error_at_border(&self, stiffness: f64, mean_pressure: f64) -> f64 {
+        if self.rim.at_border > 0.0 {
+            STIFFNESS_AT_BORDER * self.rim.at_border * stiffness / mean_pressure.powi(2)
+        } else {
+            0.0
+        }
     }
 
     /// Part of the contact edges at which the heights jump, as at the edge of a flat top.
