@@ -232,3 +232,14 @@ pub(crate) fn cell([x, y]: [f64; 2]) -> String {
     let side = engineering(x, "m");
     if (x - y).abs() <= 1e-12 * x { side } else { format!("{side} by {}", engineering(y, "m")) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::coefficient;
+
+    #[test]
+    fn a_friction_ends_where_its_error_does() {
+        assert_eq!(coefficient(0.005_796, 0.000_4), "0.00580 ± 0.00040");
+        assert_eq!(coefficient(-2e-19, 3e-18), "0");
+    }
+}
