@@ -271,7 +271,10 @@ class Result:
 
     @property
     def lateral_friction(self) -> float | None:
-        """Force across the velocity, positive to its left, relative to the load. None without ``speed``."""
+        """Force on the solid to the left of the velocity, relative to the load. None without ``speed``.
+
+        The force on the surface is the opposite one: a positive value pushes it to the right.
+        """
         return self.summary.get("lateral_friction")
 
     @property

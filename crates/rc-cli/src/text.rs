@@ -5,6 +5,8 @@ use std::path::Path;
 use rc_core::quantity::{Scale, count, digits, engineering};
 use rc_sweep::{ControlKind, FrictionSummary, LeakageSummary, Summary};
 
+use crate::study::record::words_with_error;
+
 /// A few aligned lines about a solved problem.
 ///
 /// `sides` are those of the cell in m, and `e_star` is E* in Pa.
@@ -85,8 +87,17 @@ pub(crate) fn plastic(s: &Summary) -> Option<String> {
 /// Text of the friction; `None` without a speed.
 pub(crate) fn friction(s: &Summary) -> Option<String> {
     let FrictionSummary { friction, friction_error, lateral_friction, dissipated_power, .. } = s.friction?;
-    let (friction, lateral) = (with_error(friction, friction_error), digits(lateral_friction, 2));
+    let friction = coefficient(friction, friction_error);
+    let lateral = if lateral_friction.abs() < NO_FRICTION { "0".to_owned() } else { digits(lateral_friction, 2) };
     Some(format!("{friction}, lateral {lateral}, dissipates {}", engineering(dissipated_power, "W/m²")))
+}
+
+/// Friction coefficient below which only errors of rounding are left.
+const NO_FRICTION: f64 = 1e-12;
+
+/// A friction coefficient that ends where its error does, such as `0.00580 ± 0.00040`.
+pub(crate) fn coefficient(value: f64, error: f64) -> String {
+    if value.abs().max(error) < NO_FRICTION { "0".to_owned() } else { words_with_error(value, error, "") }
 }
 
 /// Text of the electrical and thermal conductance.
@@ -220,4 +231,15 @@ fn converged(s: &Summary) -> String {
 pub(crate) fn cell([x, y]: [f64; 2]) -> String {
     let side = engineering(x, "m");
     if (x - y).abs() <= 1e-12 * x { side } else { format!("{side} by {}", engineering(y, "m")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::coefficient;
+
+    #[test]
+    fn a_friction_ends_where_its_error_does() {
+        assert_eq!(coefficient(0.005_796, 0.000_4), "0.00580 ± 0.00040");
+        assert_eq!(coefficient(-2e-19, 3e-18), "0");
+    }
 }

@@ -13,7 +13,7 @@ pub struct FrictionSummary {
     pub friction_error: f64,
     /// Proven bound of the error of `friction` that the iteration leaves on this grid.
     pub friction_bound: f64,
-    /// Force on the solid across the velocity, positive to its left, relative to the load.
+    /// Force on the solid to the left of the velocity, relative to the load. That on the surface is to the right.
     pub lateral_friction: f64,
     /// Power that the solid dissipates, per nominal area (W/m²).
     pub dissipated_power: f64,

@@ -194,7 +194,7 @@ fn tiles(s: &Summary) -> Vec<Tile> {
         tile("stiffness", text::stiffness(s)),
     ];
     if let Some(FrictionSummary { friction, friction_error, .. }) = s.friction {
-        tiles.insert(1, tile("friction", text::with_error(friction, friction_error)));
+        tiles.insert(1, tile("friction", text::coefficient(friction, friction_error)));
     }
     if let (Some(fraction), Some(error)) = (s.plastic_area_fraction, s.plastic_area_fraction_error) {
         tiles.insert(1, tile("plastic area", format!("{} %", text::with_error(100.0 * fraction, 100.0 * error))));

@@ -320,6 +320,9 @@ impl Column {
     fn cell(&self, row: &Row) -> String {
         let Some(value) = row.number(self.key) else { return "–".to_owned() };
         let bar = bar_of(&row.cells, self.key);
+        if let (Some(bar), "friction") = (bar, self.key) {
+            return text::coefficient(value, bar);
+        }
         bar.map_or_else(|| digits(value, 4), |bar| format!("{} ± {}", digits(value, 4), digits(bar, 1)))
     }
 }

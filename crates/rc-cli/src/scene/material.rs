@@ -8,6 +8,8 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
+use super::quantity::time;
+
 /// A Prony series: its file, or its terms.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PronySpec {
@@ -126,11 +128,12 @@ impl FromStr for FractionalSpec {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let values: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
-        match values.as_deref() {
-            Some(&[alpha, glassy_ratio, tau]) => Ok(Self { alpha, glassy_ratio, tau }),
-            _ => Err(format!("must be alpha, glassy ratio and relaxation time (s), such as 0.2,10,1e-3, not '{text}'")),
-        }
+        let wrong =
+            || format!("must be alpha, glassy ratio and relaxation time (s), such as 0.2,10,1e-3, not '{text}'");
+        let words: Vec<&str> = text.split(',').map(str::trim).collect();
+        let [alpha, glassy_ratio, tau] = words[..] else { return Err(wrong()) };
+        let number = |word: &str| word.parse().map_err(|_| wrong());
+        Ok(Self { alpha: number(alpha)?, glassy_ratio: number(glassy_ratio)?, tau: time::parse(tau)? })
     }
 }
 

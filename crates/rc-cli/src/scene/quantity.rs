@@ -79,6 +79,26 @@ pub(crate) fn penetrations(text: &str) -> Result<Loads, String> {
     Loads::with_units(text, Dimension::Length)
 }
 
+/// Checks a list of speeds, or the ends of a range.
+///
+/// # Errors
+/// One line about what is no speed.
+pub(crate) fn check_speeds(text: &str) -> Result<(), String> {
+    let ends: Vec<&str> = text.splitn(3, ':').collect();
+    let is_range = ends.len() == 3;
+    let parts = if is_range { ends[..2].to_vec() } else { text.split(',').collect() };
+    for part in parts {
+        let speed = speed::parse(part)?;
+        if !speed.is_finite() {
+            return Err(format!("must be finite speeds (m/s), not '{part}'"));
+        }
+        if is_range && speed <= 0.0 {
+            return Err("a range must begin and end above 0 (m/s); give 0 in a list, such as 0,1mm/s,1cm/s".to_owned());
+        }
+    }
+    Ok(())
+}
+
 /// Reads times of the command line.
 pub(crate) fn times(text: &str) -> Result<Loads, String> {
     // The ends of a range, or all values.

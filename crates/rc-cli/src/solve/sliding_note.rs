@@ -28,6 +28,18 @@ pub(super) fn of(summary: &Summary, contact: &ContactSetup) -> Option<String> {
     let is_elastic = tangent < ELASTIC && high - low < ELASTIC * high;
     is_elastic.then(|| {
         let modulus = engineering(high * contact.units.elasticity().e_star(), "Pa");
-        format!("note: at this speed the solid is elastic, with E* = {modulus}; its friction is almost 0")
+        let state = state(high, sliding.material.glassy_ratio(), summary.grid[1] == 1);
+        format!("note: at this speed the solid is {state}, with E* = {modulus}; its friction is almost 0")
     })
+}
+
+/// What a solid of this modulus is, relative to the relaxed one. Waves across the velocity stay relaxed at any speed.
+fn state(modulus: f64, glassy_ratio: f64, is_profile: bool) -> &'static str {
+    if is_profile || modulus < 1.0 + ELASTIC {
+        "elastic"
+    } else if modulus > (1.0 - ELASTIC) * glassy_ratio {
+        "nearly glassy along the sliding direction"
+    } else {
+        "nearly elastic along the sliding direction"
+    }
 }

@@ -7,8 +7,8 @@ use rc_sweep::Shard;
 
 /// Quantities that can be averaged.
 ///
-/// They are numbers that every row has and that converge as grids become finer.
-pub(crate) const QUANTITIES: [&str; 9] = [
+/// They are numbers that converge as grids become finer. Every row has them, but for the friction, which needs a speed.
+pub(crate) const QUANTITIES: [&str; 10] = [
     "area_fraction",
     "penetration",
     "mean_pressure",
@@ -18,6 +18,7 @@ pub(crate) const QUANTITIES: [&str; 9] = [
     "contact_stiffness",
     "elastic_energy",
     "h_max",
+    "friction",
 ];
 
 /// The shard in its written form: `2/8`, `auto`, or `auto/8`.

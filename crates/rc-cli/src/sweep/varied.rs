@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use toml::Table;
 
 use crate::error::CliError;
-use crate::scene::file;
 use crate::scene::keys::Scene;
+use crate::scene::{file, quantity};
 
 /// A key and its values.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,8 +63,9 @@ impl Variation {
     /// The list of `--speeds`.
     ///
     /// # Errors
-    /// One line about a value that occurs twice.
+    /// One line about a value that is no speed, or occurs twice.
     pub(super) fn speeds(text: &str) -> Result<Self, String> {
+        quantity::check_speeds(text)?;
         Ok(Self { flag: "speeds", ..format!("speed={text}").parse()? })
     }
 

@@ -84,13 +84,18 @@ fn all_forms_of_a_material_are_one() {
     // A flag takes the place of the material in the scene.
     let single = friction(&run(&place, "solve list.toml --glassy-ratio 4 --relaxation-time 1ms --quiet --json"));
     let fractional = friction(&run(&place, "solve solid.toml --quiet --json"));
+    let with_unit = friction(&run(&place, "solve solid.toml --fractional 1,4,1ms --quiet --json"));
+    assert_eq!(with_unit.to_bits(), fractional.to_bits(), "a time with its unit");
     assert!((fractional / single - 1.0).abs() < 1e-3 && (first / single - 1.0).abs() > 0.1, "{single}");
     let at_rest = friction(&run(&place, "solve list.toml --speed 0 --quiet --json"));
     assert_eq!(at_rest.to_bits(), 0, "at rest");
     let printed = run(&place, &format!("solve {SOFT} --pressure 2kPa --speed 0.01 --prony rubber.csv"));
     assert!(text(&printed.stdout).contains("friction ") && text(&printed.stderr).is_empty(), "{printed:?}");
     let fast = run(&place, &format!("solve {SOFT} --pressure 2kPa --speed 1e6 --prony rubber.csv"));
-    assert!(text(&fast.stderr).contains("note: at this speed the solid is elastic, with E* = 39.48 MPa"), "{fast:?}");
+    let glassy = "note: at this speed the solid is nearly glassy along the sliding direction, with E* = 39.48 MPa";
+    assert!(text(&fast.stderr).contains(glassy), "{fast:?}");
+    let slow = run(&place, &format!("solve {SOFT} --pressure 2kPa --speed 1e-9 --prony rubber.csv"));
+    assert!(text(&slow.stderr).contains("the solid is elastic, with E* = 3.948 MPa"), "{slow:?}");
 }
 
 #[test]
@@ -128,6 +133,7 @@ fn what_cannot_slide_is_refused() {
         ("--speed 1 --glassy-ratio 3 --relaxation-time -1", "relaxation_time: a relaxation time of -1"),
         ("--speed 1 --glassy-ratio 1 --relaxation-time 1", "glassy_ratio: a glassy ratio of 1"),
         ("--speed 1 --fractional 2,3,1", "fractional: an exponent alpha of 2"),
+        ("--speed 1 --fractional 0.2,10,1m", "fractional <ALPHA,RATIO,S>': must be a time in s, such as 1e-3"),
         ("--speed 1 --fractional 2,3", "must be alpha, glassy ratio and relaxation time (s)"),
         ("--speed -1 --prony rubber.csv", "not -1; for the other way give --direction 180"),
         ("--speed 1km --prony rubber.csv", "must be a speed in m/s"),
@@ -185,7 +191,15 @@ fn a_sweep_over_speeds_has_the_friction_of_each_solve_and_its_curves() {
     let with_list = format!("sweep {solid} --pressure 2kPa --speeds 1,2 --speed 1 --out t");
     assert_refused(&run(&place, &with_list), "--speeds and --speed are both given");
     let bad = format!("sweep {solid} --pressure 2kPa --speeds 1,2Pa --out t");
-    assert_refused(&run(&place, &bad), "speeds: speed: must be a speed in m/s");
+    assert_refused(&run(&place, &bad), "'--speeds <LIST>': must be a speed in m/s");
+    for (speeds, expected) in [
+        ("nan", "must be finite speeds (m/s), not 'nan'"),
+        ("1,inf", "must be finite speeds (m/s), not 'inf'"),
+        ("0:1:3", "a range must begin and end above 0 (m/s); give 0 in a list, such as 0,1mm/s,1cm/s"),
+    ] {
+        let bad = format!("sweep {solid} --pressure 2kPa --speeds {speeds} --out t");
+        assert_refused(&run(&place, &bad), &format!("'--speeds <LIST>': {expected}"));
+    }
 }
 
 #[test]
