@@ -336,10 +336,9 @@ mod tests {
             ("speed = inf\nprony = [[1.0, 1.0]]", "speed"),
             ("speed = 1.0\nprony = [[1.0, 1.0]]\ndirection = nan", "direction"),
             ("speed = 1.0\nprony = [[1.0, 1.0]]\nboundary = \"free\"", "speed"),
-            ("speed = 1.0\nprony = [[1.0, 1.0]]\nmethod = \"adaptive\"", "method"),
             ("speed = 1.0\nprony = [[1.0, 1.0]]\nmethod = \"gauss-seidel\"", "method"),
             ("speed = 1.0\nprony = [[1.0, 1.0]]\nkernel = \"own\"", "speed"),
-            ("speed = 1.0\nprony = [[1.0, 1.0]]\nborder_level = 1", "border_level"),
+            ("speed = 1.0\nprony = [[1.0, 1.0]]\nborder_level = 1", "speed"),
             ("speed = 1.0\nprony = [[1.0, 1.0]]\nyoung2 = 1e9\npoisson2 = 0.3", "young2"),
         ]);
     }
