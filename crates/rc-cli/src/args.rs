@@ -85,6 +85,35 @@ mod tests {
         1 + below.sum::<usize>()
     }
 
+    /// The flags of a command, and of those below, that refuse a number with a unit of their quantity.
+    fn without_units(command: &clap::Command, words: &[&str]) -> Vec<String> {
+        let unit = |name: &str| match name {
+            "M" | "LENGTH" => Some("1.5mm"),
+            "PA" => Some("1.5MPa"),
+            "DEG" => Some("1.5deg"),
+            "M/S" => Some("1.5mm/s"),
+            "S" => Some("1.5ms"),
+            "PAS" => Some("1.5mPas"),
+            _ => None,
+        };
+        let refuses = |arg: &clap::Arg| {
+            let (long, name) = (arg.get_long()?, arg.get_value_names()?.first()?);
+            let flag = format!("--{long}={}", unit(name)?);
+            let read = Cli::command().try_get_matches_from([words, &[flag.as_str()]].concat());
+            let is_refused = read.is_err_and(|error| error.kind() == clap::error::ErrorKind::ValueValidation);
+            is_refused.then(|| [words, &[flag.as_str()]].concat().join(" "))
+        };
+        let here = command.get_arguments().filter_map(refuses);
+        let below =
+            command.get_subcommands().flat_map(|below| without_units(below, &[words, &[below.get_name()]].concat()));
+        here.chain(below).collect()
+    }
+
+    #[test]
+    fn every_quantity_takes_its_unit() {
+        assert_eq!(without_units(&Cli::command(), &["rc"]), Vec::<String>::new());
+    }
+
     #[test]
     fn a_page_of_help_fits_two_screens() {
         assert!(check_pages(&Cli::command(), &["rc"]) > 10, "not all pages were found");

@@ -40,7 +40,7 @@ pub(crate) struct TreatmentKeys {
     #[arg(long, value_name = "HOW")]
     pub(crate) fill: Option<Fill>,
     /// Gaussian filter (L-filter of ISO 25178-3) that halves waves of this length (m) and removes longer ones
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LENGTH", value_parser = length::parse, allow_hyphen_values = true)]
     pub(crate) high_pass: Option<f64>,
     /// Make opposite borders meet: mirror (twice the side), window, or as-is (they meet already)
     ///
