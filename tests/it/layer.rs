@@ -15,7 +15,7 @@ use crate::examples::own_kernel::BondedLayer;
 use crate::{assert_close, solved};
 
 fn layer(thickness: f64, poisson: f64) -> Layer {
-    Layer { thickness, poisson }
+    Layer::on_rigid_base(thickness, poisson)
 }
 
 /// A paraboloid with its apex at the centre of an element.
