@@ -187,7 +187,6 @@ impl<'a> SlidingDescent<'a> {
         (most_iterations, observer): (usize, &dyn Observer),
     ) -> Result<GapSums, Stopped> {
         let ([steps, rounds], mut sums) = (fallback.next(), *sums);
-        let steps_of_round = if self.storage.keeps_steps() { 2 } else { 1 };
         for _ in 0..steps {
             if self.descent.info.iterations >= most_iterations {
                 break;
@@ -196,11 +195,7 @@ impl<'a> SlidingDescent<'a> {
             self.exchange();
             for _ in 0..rounds {
                 self.work.storage_rounds += 1;
-                let round = if fallback.is_long() {
-                    self.descent.descending_round(&sums, observer)
-                } else {
-                    self.descent.round(steps_of_round, &sums, observer)
-                };
+                let round = self.descent.descending_round(&sums, observer);
                 if round.is_err() {
                     self.exchange();
                 }
@@ -244,10 +239,5 @@ impl Fallback {
             None => [1, 1],
             Some(more) => [0, 1].map(|i| (LONG[i] << more.min(8)).min(LONGEST[i])),
         }
-    }
-
-    /// Whether steps are solved well.
-    fn is_long(&self) -> bool {
-        self.failures >= FAILURES
     }
 }

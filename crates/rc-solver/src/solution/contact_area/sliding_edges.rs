@@ -110,3 +110,19 @@ fn ends(pressure: &Field) -> [usize; 2] {
     }
     counts
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lag_shorter_than_an_element_is_hidden_and_a_longer_one_is_not() {
+        let hidden = |elements: f64| {
+            let compliance = |q: f64| Complex64::from(0.1) + 0.9 / Complex64::new(1.0, -q * elements);
+            SlidingEdges::of_chord([20.0, 0.3], 1.0, compliance).hidden_lag / (0.3 / 20.0)
+        };
+        // Hunter's cylinder becomes narrower by (1 - J0) ℓ.
+        assert!((hidden(0.01) / 0.009 - 1.0).abs() < 2e-3);
+        assert!(hidden(30.0) < 0.01);
+    }
+}
