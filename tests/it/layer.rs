@@ -209,7 +209,9 @@ fn assert_agreement(problem: &ContactProblem<'_>, tolerance: f64) {
     assert_close("load", a.mean_pressure, b.mean_pressure, square);
     assert_close("penetration", a.penetration, b.penetration, square);
     assert_close("energy", a.elastic_energy, b.elastic_energy, square);
-    assert_close("stiffness", found.stiffness(), expected.stiffness(), 3e-3);
+    // Full contact on an elastic substrate is infinitely stiff.
+    let (stiffness, wanted) = (found.stiffness(), expected.stiffness());
+    assert!(stiffness == wanted || (stiffness / wanted - 1.0).abs() < 3e-3, "stiffness {stiffness}, not {wanted}");
     let [a, b] = [&found, &expected].map(Solution::observables);
     assert_close("rms pressure", a.rms_pressure, b.rms_pressure, square);
     // The gap of heavy contact is a small difference.
@@ -247,7 +249,7 @@ fn both_methods_agree_on_layers() {
 #[test]
 fn both_methods_agree_with_what_layers_are_combined_with() {
     let oblong = {
-        let grid = Grid::new(256, 192).expect("a grid");
+        let grid = Grid::in_cell(256, 192, 0.75).expect("a grid");
         let square = rough(256, 8);
         Field::from_fn(grid, |at| square.at((at.x * 256.0) as usize % 256, (at.y / 0.75 * 256.0) as usize % 256))
     };

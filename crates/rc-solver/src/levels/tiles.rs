@@ -78,12 +78,12 @@ pub(crate) fn prepare<'a>(
     let usual = base_sides(&source, params.base_side, boundary)?;
     let finer = params.base_side.is_none().then(|| base_sides(&source, Some(2 * usual[0]), boundary).ok()).flatten();
     let source = with_border_level(source, params.border_level)?;
-    let solid = |base| Solid::new(kernel, split, Base::new(Ladder::new(base, source.grid()), boundary));
     let allowed = UNRESOLVED_PART * params.solve.bound.overlap();
+    let solid = |base| Solid::new(kernel, split, Base::new(Ladder::new(base, source.grid()), boundary), allowed);
     let (base, solid) = match (solid(usual), finer) {
-        (Ok(solid), _) if solid.unresolved() <= allowed => (usual, solid),
+        (Ok(solid), _) => (usual, solid),
         (_, Some(finer)) => (finer, solid(finer)?),
-        (solid, None) => (usual, solid?),
+        (Err(error), None) => return Err(error),
     };
     check_split(kernel, split, grid)?;
     let ladder = Ladder::new(base, source.grid());

@@ -48,19 +48,25 @@ impl<B: Into<Base>> From<B> for Solid {
 }
 
 impl Solid {
-    /// The solid of a `kernel` with this `split`.
+    /// The solid of a `kernel` with this `split`. The base grid may leave deviations unresolved that are `allowed`.
     ///
     /// # Errors
     /// [`AdaptiveError::Deviation`] if the base grid does not resolve its deviation from the half-space.
-    pub(crate) fn new(kernel: &dyn Kernel, split: &dyn SplitByScale, base: Base) -> Result<Self, AdaptiveError> {
-        let deviates_below = split.deviates_below(largest_unresolved());
+    pub(crate) fn new(
+        kernel: &dyn Kernel,
+        split: &dyn SplitByScale,
+        base: Base,
+        allowed: f64,
+    ) -> Result<Self, AdaptiveError> {
+        let most = UNRESOLVED.into_iter().rev().find(|part| *part <= allowed).unwrap_or(UNRESOLVED[0]);
+        let deviates_below = split.deviates_below(most);
         if deviates_below == 0.0 {
             return Ok(base.into());
         }
         let grid = base.grid();
         let resolved = if base.is_free() { 0.0 } else { RESOLVED * PI / grid.spacing().max_element() };
         // NaN is not resolved.
-        let is_resolved = |part: &f64| split.deviates_below(*part) <= resolved;
+        let is_resolved = |part: &f64| *part <= most && split.deviates_below(*part) <= resolved;
         let Some(at) = UNRESOLVED.iter().position(is_resolved) else {
             return Err(AdaptiveError::Deviation { kernel: kernel.name(), deviates_below, resolved });
         };
