@@ -18,18 +18,22 @@ class Given(TypedDict):
     kernel: Callable[[Floats, Floats], Any] | None
     progress: Callable[[int, int, int, int, int, float, float, int], object] | None
     is_row: bool
+    creep: float | None
 
 class Wanted(TypedDict):
     penetrations: bool
     loads: list[float]
     seeds: list[int] | None
     vary: list[tuple[str, Any]]
+    speeds: str | None
+    times: str | None
     heights: Floats | None
     sides: Sides | None
     scene: str | None
     folder: str | None
     resume: bool
     fields: bool
+    keeps: bool
 
 class Solved:
     @property
@@ -55,6 +59,7 @@ class Unfinished:
 
 class Planned:
     def rows(self) -> list[tuple[int | None, float, str]]: ...
+    def creep(self, index: int) -> float | None: ...
     def describe(self, index: int) -> str: ...
     def todo(self) -> list[int]: ...
     def kept(self) -> list[tuple[int, str]]: ...
@@ -82,7 +87,7 @@ def inspect_surface(keys: dict[str, Any]) -> str: ...
 def inspect_map(heights: Floats, sides: Sides | None, keys: dict[str, Any]) -> str: ...
 def inspect_result(folder: str) -> str: ...
 def treat(heights: Floats, sides: Sides | None, words: list[str]) -> tuple[Floats, list[float] | None, list[str]]: ...
-def cells(summary: str, scene: str) -> str: ...
+def cells(summary: str, scene: str, creep: float | None = None) -> str: ...
 def scene_numbers(scene: str) -> tuple[list[float], float, int | None]: ...
 def stress_distribution(
     pressure: Floats, e_star: float, edges: list[float], area: float | None = None
