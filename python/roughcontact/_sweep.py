@@ -379,7 +379,7 @@ def _jobs(
     others: tuple[str, ProgressOption, bool, _Places],
 ) -> list[Job]:
     control, progress, keeps_result, places = others
-    options = {"scene": problem.scene, "kernel": kernel, "progress": progress}
+    options: dict[str, Any] = {"scene": problem.scene, "kernel": kernel, "progress": progress}
     rows, jobs = planned.rows(), []
     for index in planned.todo():
         seed, load, varied = rows[index]
@@ -388,8 +388,8 @@ def _jobs(
         keys.pop("force", None)
         keys.pop("time", None)
         group = None if places.groups is None else os.path.join(places.groups, f"{index + 1:04}.zarr")
-        options = {**options, "creep": planned.creep(index)}
-        jobs.append(Job(index, problem.heights, keys, options, keeps_result, planned.fields_folder(index), group))
+        row = {**options, "creep": planned.creep(index)}
+        jobs.append(Job(index, problem.heights, keys, row, keeps_result, planned.fields_folder(index), group))
     return jobs
 
 

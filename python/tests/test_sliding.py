@@ -64,8 +64,8 @@ def _same_rows(table, folder):
 
 
 def test_lists_of_speeds_and_times_are_those_of_the_command_line(tmp_path):
-    keys = {key: value for key, value in SCENE.items() if key != "pressure"}
-    words = "sweep --waves 8 --grid 64 --seed 2 --cell 0.01 --pressure 4e5 --prony [[3,0.001],[6,0.1]] --quiet".split()
+    keys = {"seeds": [2], **{key: value for key, value in SCENE.items() if key not in ("pressure", "seed")}}
+    words = "sweep --waves 8 --grid 64 --seeds 2 --cell 0.01 --pressure 4e5 --prony [[3,0.001],[6,0.1]] --quiet".split()
     solid = {"prony": [(3, 1e-3), (6, 0.1)]}
     _core.run(["rc", *words, "--speeds", "1mm/s:0.1:3", "--out", str(tmp_path / "speeds")])
     for speeds in ("1mm/s:0.1:3", ["1mm/s", 1e-2, np.float64(0.1)]):
@@ -103,7 +103,7 @@ def test_lists_of_speeds_and_times_are_those_of_the_command_line(tmp_path):
     ],
 )
 def test_lists_that_cannot_be_are_refused_in_one_line(keys, message):
-    scene = {key: value for key, value in SCENE.items() if key != "pressure"}
+    scene = {key: value for key, value in SCENE.items() if key not in ("pressure", "seed")}
     with pytest.raises(ValueError, match=message) as refused:
         rc.sweep(**scene, glassy_ratio=10, relaxation_time=1e-2, **keys)
     assert "\n" not in str(refused.value)

@@ -214,7 +214,10 @@ mod tests {
         let sliding = dir.path().join("c.svg");
         save_svg(&picture.clone().sliding(Some(DVec2::NEG_X)), &sliding).expect("an SVG file");
         let arrow = std::fs::read_to_string(sliding).expect("the SVG file");
-        assert!(arrow.contains("\nsliding\n") && arrow.matches("<polyline").count() == text.matches("<polyline").count() + 2);
+        assert!(
+            arrow.contains("\nsliding\n")
+                && arrow.matches("<polyline").count() == text.matches("<polyline").count() + 2
+        );
         let named = picture.clone().captioned("seed 1, pressure 2 MPa".to_owned());
         assert!(named.size().1 > picture.size().1);
         save_svg(&named, &dir.path().join("b.svg")).expect("an SVG file");

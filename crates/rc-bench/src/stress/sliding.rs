@@ -80,7 +80,7 @@ impl Scene {
         if converged {
             rows.at_most(name, "energy error", claimed, ENERGY);
         }
-        // The hardness has another bound, and waves sum only on grids of the smallest elements.
+        // With a hardness, the bound is another one.
         if self.hardness.is_infinite() {
             let found = energy_error(pressure, &self.heights, &*self.kernel).unwrap_or(f64::NAN);
             rows.at_most(name, "energy error by audit", found, claimed + SAME_ENERGY);
@@ -133,18 +133,21 @@ fn displacement(pressure: &Field, kernel: &dyn Kernel) -> Option<Vec<f64>> {
     let grid = pressure.grid();
     let (nx, ny) = (grid.nx(), grid.ny());
     let symbol = kernel.sliding_symbol(grid)?;
-    let values: Vec<Complex64> = pressure.values().iter().map(|&p| p.into()).collect();
+    // The mean would leave its rounding in all waves.
+    let mean = pressure.mean();
+    let values: Vec<Complex64> = pressure.values().iter().map(|&p| (p - mean).into()).collect();
     let mut waves = transformed(&values, [nx, ny], -1.0);
-    for (i, wave) in waves.iter_mut().enumerate() {
-        let [kx, ky] =
-            [(i % nx, nx), (i / nx, ny)].map(|(k, n)| if 2 * k > n { k as i64 - n as i64 } else { k as i64 });
-        *wave *= match (kx, ky) {
-            (0, 0) => Complex64::default(),
-            // A real displacement has the conjugate at the opposite wave.
-            (kx, ky) if kx < 0 => symbol(-kx, if 2 * ky.unsigned_abs() as usize == ny { ky } else { -ky }).conj(),
-            (kx, ky) => symbol(kx, ky),
-        };
+    // A wave of half the elements along a side is the same wave in both directions.
+    let both = |k: usize, n: usize| {
+        let k = if 2 * k > n { k as i64 - n as i64 } else { k as i64 };
+        if 2 * k.unsigned_abs() as usize == n { [k, -k] } else { [k, k] }
+    };
+    for (i, wave) in waves.iter_mut().enumerate().skip(1) {
+        let (columns, rows) = (both(i % nx, nx), both(i / nx, ny));
+        let of_all = columns.into_iter().flat_map(|kx| rows.map(|ky| symbol(kx, ky)));
+        *wave *= 0.25 * of_all.sum::<Complex64>();
     }
+    waves[0] = Complex64::default();
     let scale = (grid.len() as f64).recip();
     Some(transformed(&waves, [nx, ny], 1.0).iter().map(|u| scale * u.re).collect())
 }
