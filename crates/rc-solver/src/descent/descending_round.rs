@@ -5,7 +5,7 @@
 
 use rc_core::Observer;
 
-use crate::descent::state::Descent;
+use crate::descent::state::{Descent, Follows};
 use crate::descent::stop::Stopped;
 use crate::descent::sums::GapSums;
 use crate::parallel;
@@ -50,11 +50,16 @@ impl Descent<'_> {
             (self.pressure, self.gap) = before;
             return Err(Stopped);
         };
-        if !has_risen(sums, &after) {
+        // The work of a gap that follows changes only is not that of its pressure, and tells no energy.
+        let (mut part, mut has_risen) = (1.0, self.follows == Follows::Pressure && has_risen(sums, &after));
+        if has_risen || self.follows == Follows::Changes {
+            part = self.best_part(&before.0, &before.1, zero_gap);
+            has_risen |= part < ENOUGH;
+        }
+        if !has_risen {
             self.step_factor = (LONGER * self.step_factor).min(1.0);
             return Ok(after);
         }
-        let part = self.best_part(&before.0, &before.1, zero_gap);
         if part < ENOUGH {
             self.step_factor *= SHORTER;
         }

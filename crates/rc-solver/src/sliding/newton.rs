@@ -196,7 +196,11 @@ impl<'a> SlidingDescent<'a> {
             self.exchange();
             for _ in 0..rounds {
                 self.work.storage_rounds += 1;
-                let round = self.descent.round(steps_of_round, &sums, observer);
+                let round = if fallback.is_long() {
+                    self.descent.descending_round(&sums, observer)
+                } else {
+                    self.descent.round(steps_of_round, &sums, observer)
+                };
                 if round.is_err() {
                     self.exchange();
                 }
@@ -240,5 +244,10 @@ impl Fallback {
             None => [1, 1],
             Some(more) => [0, 1].map(|i| (LONG[i] << more.min(8)).min(LONGEST[i])),
         }
+    }
+
+    /// Whether steps are solved well.
+    fn is_long(&self) -> bool {
+        self.failures >= FAILURES
     }
 }
