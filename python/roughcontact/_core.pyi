@@ -33,7 +33,6 @@ class Wanted(TypedDict):
     folder: str | None
     resume: bool
     fields: bool
-    keeps: bool
 
 class Solved:
     @property

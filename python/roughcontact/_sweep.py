@@ -204,8 +204,10 @@ def sweep(
     problem = _anywhere(heights, keys, scene, strict)
     if speeds is not None and "speed" in keys:
         raise ValueError("speeds: is given with speed; give one of them")
+    if times is not None and (keep_results or fields):
+        raise ValueError("times: the pressure after a time is not that of an elastic contact; omit fields and keep_results")
     swept = (_swept("speeds", speeds), _swept("times", times))
-    planned = _plan(problem, kernel, (control, loads, _seeds(seeds, heights), varied), swept, places, keep_results)
+    planned = _plan(problem, kernel, (control, loads, _seeds(seeds, heights), varied), swept, places)
     kept = planned.kept()
     if kept and keep_results:
         planned.end()
@@ -348,7 +350,6 @@ def _plan(
     lists: tuple[str, list[float], list[int] | None, list[tuple[str, Any]]],
     swept: tuple[str | None, str | None],
     places: _Places,
-    keeps_results: bool,
 ) -> _core.Planned:
     keys, array, sides, _ = surface_of(problem.heights, problem.keys)
     if isinstance(kernel, str):
@@ -367,7 +368,6 @@ def _plan(
         "folder": places.out,
         "resume": places.resume,
         "fields": places.in_out,
-        "keeps": places.in_out or places.groups is not None or keeps_results,
     }
     return _core.plan_sweep(keys, wanted)
 

@@ -52,9 +52,6 @@ pub(crate) struct Wanted<'py> {
     /// Whether each row has a result folder there.
     #[pyo3(item)]
     fields: bool,
-    /// Whether each row has fields or a result anywhere.
-    #[pyo3(item)]
-    keeps: bool,
 }
 
 /// The values of a varied key: one by one, or as text of the command line.
@@ -90,13 +87,13 @@ pub(crate) struct Planned {
 #[pyfunction]
 pub(crate) fn plan_sweep(py: Python<'_>, keys: &Bound<'_, PyDict>, wanted: Wanted<'_>) -> PyResult<Planned> {
     let Wanted { penetrations, loads, seeds, vary, speeds, times, heights, sides, .. } = wanted;
-    let Wanted { scene: file, folder, resume, fields, keeps, .. } = wanted;
+    let Wanted { scene: file, folder, resume, fields, .. } = wanted;
     let scene = scene::with_map(keys, file.as_deref(), heights.is_some())?;
     let control = if penetrations { ControlKind::Penetration } else { ControlKind::Pressure };
     let mut vary = vary.iter().map(|(key, values)| variation(key, values)).collect::<PyResult<Vec<_>>>()?;
     vary.extend(speeds.map(|list| Variation::speeds(&list)).transpose().map_err(|cause| refused("speeds", cause))?);
     let times = times.map(|list| sweep::times(&list)).transpose().map_err(|cause| refused("times", cause))?;
-    let lists = SweepLists { control, loads: Loads(loads), seeds: seeds.map(Seeds), vary, times, fields: keeps };
+    let lists = SweepLists { control, loads: Loads(loads), seeds: seeds.map(Seeds), vary, times, fields };
     let map = heights.as_ref().map(|heights| mark(py, heights, folder.is_some())).transpose()?;
     let points = heights.as_ref().map(arrays::grid_of).transpose()?.map(|grid| [grid.nx(), grid.ny()]);
     let map = map.zip(points).map(|(mark, points)| MapMark { sides, points, mark });

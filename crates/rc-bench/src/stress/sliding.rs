@@ -42,7 +42,7 @@ impl Scene {
         Self { name: name.into(), heights, kernel, load: 2e-3, hardness: f64::INFINITY, method }
     }
 
-    fn of(self, kernel: impl Kernel + Send + Sync + 'static) -> Self {
+    fn of(self, kernel: impl Kernel + Send + 'static) -> Self {
         Self { kernel: Box::new(kernel), ..self }
     }
 

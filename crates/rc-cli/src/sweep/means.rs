@@ -45,7 +45,7 @@ fn problem(cells: &Cells) -> String {
     let constant = cells.get("mean_pressure").and_then(Value::as_f64).filter(|_| cells.contains_key("time"));
     let keys = keys.map(|(key, value)| match value.as_f64() {
         Some(load) if key == "control_value" => format!("{control} {}", engineering(constant.unwrap_or(load), unit)),
-        Some(value) if unit_of(key) != "" => format!("{key} {}", engineering(value, unit_of(key))),
+        Some(value) if !unit_of(key).is_empty() => format!("{key} {}", engineering(value, unit_of(key))),
         _ => format!("{key} {}", text(value)),
     });
     keys.collect::<Vec<_>>().join(", ")

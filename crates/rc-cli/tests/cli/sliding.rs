@@ -125,7 +125,6 @@ fn what_cannot_slide_is_refused() {
         ("word.csv", "3 1\n6 fast\n"),
         ("empty.csv", "# g tau\n"),
         ("unit.csv", "E (psi), tau (s)\n3 1\n"),
-        ("pascals.csv", "E tau\n3 1\n"),
         ("shear.csv", "G (MPa), tau (s)\n3 1\n"),
     ] {
         place.write(name, content);
@@ -172,6 +171,13 @@ fn what_cannot_slide_is_refused() {
         let words = format!("solve {SOFT} --pressure 2kPa --quiet {words}");
         assert_refused(&run(&place, &words), expected);
     }
+}
+
+#[test]
+fn moduli_in_pascals_and_profiles_have_their_own_refusals() {
+    let place = Place::new();
+    place.write("rubber.csv", RUBBER);
+    place.write("pascals.csv", "E tau\n3 1\n");
     let of_e_star = "solve --waves 8 --grid 64 --e-star 4MPa --pressure 2kPa --speed 1 --prony pascals.csv";
     assert_refused(
         &run(&place, of_e_star),
@@ -273,6 +279,12 @@ fn a_solid_that_creeps_has_the_area_of_the_elastic_contact_under_the_load_that_g
         let at = rows[0].iter().position(|head| head == name).expect("a column");
         assert!(repeated.iter().zip(&rows).all(|(one, other)| one[at] == other[at]), "{name}");
     }
+}
+
+#[test]
+fn what_cannot_creep_is_refused() {
+    let place = Place::new();
+    let solid = format!("{SOFT} --glassy-ratio 10 --relaxation-time 1ms");
     for (words, expected) in [
         ("--pressures 1kPa,2kPa --times 1,2", "times: the load is constant; give one --pressure"),
         (
