@@ -272,6 +272,7 @@ def solve_keys(
     kernel: Kernel | None = None,
     progress: ProgressOption = False,
     is_row: bool = False,
+    creep: float | None = None,
 ) -> Result:
     """Solves the problem of these keys, whether or not it converges."""
     keys, array, sides, _ = problem
@@ -288,6 +289,7 @@ def solve_keys(
         "kernel": symbol,
         "progress": None if function is None else callback(function),
         "is_row": is_row,
+        "creep": creep,
     }
     try:
         solved, unfinished, ended = _core.solve(keys, given)

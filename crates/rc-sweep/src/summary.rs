@@ -115,6 +115,9 @@ pub struct Summary {
     /// Friction of a surface that slides. Its keys exist only with a speed, and are 0 at the speed 0.
     #[serde(flatten)]
     pub friction: Option<FrictionSummary>,
+    /// The smallest dp/dσ0 in contact, of a solid that creeps. At most 0 where it would have to pull.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub least_pressure_rise: Option<f64>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
     /// rms height about the mean (m).
@@ -280,6 +283,7 @@ impl Summary {
             conductance: context.conductivity.map(|of_bodies| of_spots[0].map(|per_unit| per_unit * of_bodies)),
             conductance_error: context.conductivity.map(|of_bodies| of_spots[1].map(|error| error * of_bodies)),
             friction: context.slides.then(|| FrictionSummary::of(solution, units)),
+            least_pressure_rise: None,
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,

@@ -22,6 +22,7 @@ use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
 use crate::scene::resolve::ContactSetup;
+use crate::scene::resolve::sliding::SlidingSolid;
 use crate::scene::values::{Conductivity, GridSpec};
 use crate::scene::wave_file::WaveFile;
 use crate::warnings::result::after;
@@ -90,7 +91,8 @@ impl ResultFiles<'_> {
         let second_body = keys.young2.zip(keys.poisson2).map(|(young, poisson)| SecondBody { young, poisson });
         let control = if keys.force.is_some() { "force".to_owned() } else { summary.control };
         let (force, source) = (keys.force, self.origin.cloned());
-        Summary { control, force, leakage, warnings, source, second_body, ..summary }
+        let least_pressure_rise = self.contact.creep.and_then(|_| self.solution.least_pressure_rise());
+        Summary { control, force, least_pressure_rise, leakage, warnings, source, second_body, ..summary }
     }
 
     /// The warnings from before the solve, and those that only the solution shows.
@@ -228,7 +230,8 @@ fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'
         picture.take(rows);
         Ok::<_, Infallible>(())
     });
-    let picture = picture.finish(e_star, side);
+    let direction = contact.sliding.as_ref().and_then(SlidingSolid::heading);
+    let picture = picture.finish(e_star, side).sliding(direction);
     staged.add("contact.png", |path| save_png(&picture, path))
 }
 

@@ -11,7 +11,7 @@ use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, put_tile};
 use crate::descent::contact_element::ContactElement;
 use crate::descent::info::{SolveInfo, Status};
 use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
-use crate::descent::stiffness::{elastic_part, stiffness_by_gmres, stiffness_pressure, stiffness_under};
+use crate::descent::stiffness::{elastic_part, least_rise, stiffness_by_gmres, stiffness_pressure, stiffness_under};
 use crate::solution::contact_area::area::ContactArea;
 use crate::solution::contact_area::plastic::PlasticEdges;
 use crate::solution::gap_part::GapPart;
@@ -203,6 +203,17 @@ impl Solved for TileSolution<'_> {
     /// To 1e-3 relative, or to a few percent if the solve did not converge. It takes a few applications of L.
     fn stiffness(&self) -> f64 {
         self.stiffness_of(&self.data.kernels, &elastic_part(&self.pressure, self.hardness), self.is_elastic())
+    }
+
+    fn least_rise(&self) -> Option<f64> {
+        if self.is_full_contact() && !self.base().is_free() {
+            return Some(1.0);
+        }
+        let kernels = &self.data.kernels;
+        let mut preconditioner = kernels.preconditioner().tables(self.finest);
+        let (hierarchy, tables) = self.operator_of(kernels.response());
+        let mut operator = TileCorrections::new(hierarchy, &tables, &mut preconditioner);
+        Some(least_rise(&self.pressure, self.finest.len() as f64, &mut operator))
     }
 
     fn conductance(&self) -> Option<f64> {

@@ -82,8 +82,14 @@ impl ContactKeys {
 impl ContactKeys {
     /// These keys without a material that relaxes.
     #[must_use]
-    pub(crate) fn elastic(self) -> Self {
+    pub fn elastic(self) -> Self {
         Self { prony: None, glassy_ratio: None, relaxation_time: None, fractional: None, ..self }
+    }
+
+    /// The keys of the material that relaxes alone.
+    pub(crate) fn relaxing(self) -> Self {
+        let Self { prony, glassy_ratio, relaxation_time, fractional, .. } = self;
+        Self { prony, glassy_ratio, relaxation_time, fractional, ..Self::default() }
     }
 }
 
