@@ -39,5 +39,8 @@ pub(crate) const DIFFERENCE_FILE: &str = "difference.png";
 /// The coefficients of waves.
 pub(crate) const WAVES_FILE: &str = "spectrum.txt";
 
+/// Tangential tractions along x and y of a sheared contact, and the length of its slip.
+pub(crate) const SHEAR_FILES: [&str; 3] = ["shear_x.npy", "shear_y.npy", "slip.npy"];
+
 /// The overlap that plastic flow has removed, with a hardness.
 pub(crate) const PLASTIC_GAP_FILE: &str = "plastic_gap.npy";
