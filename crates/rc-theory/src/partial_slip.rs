@@ -52,7 +52,7 @@ pub enum LoadCurveError {
         n: usize,
     },
     /// A load is not above the one before, or not positive.
-    #[error("its loads must be positive and increase from row to row, but {after:e} follows {before:e}")]
+    #[error("its loads must be positive and increase from row to row, but {after:.4e} follows {before:.4e}")]
     Loads {
         /// The load before.
         before: f64,
@@ -60,7 +60,7 @@ pub enum LoadCurveError {
         after: f64,
     },
     /// A penetration is below the one before.
-    #[error("its penetration must not decrease, but {after:e} follows {before:e}")]
+    #[error("its penetration must not decrease, but {after:.4e} follows {before:.4e}")]
     Penetrations {
         /// The penetration before.
         before: f64,

@@ -40,7 +40,7 @@ impl Fields {
     pub(super) fn read(folder: &Path) -> Result<Self, CliError> {
         let result = ResultFolder::read_finite(folder)?;
         let contact_name = if result.is_of_elements() { "contact" } else { "touched" };
-        let ResultFolder { summary, side, e_star, pressure, gap, plastic_gap } = result;
+        let ResultFolder { summary, side, e_star, pressure, gap, plastic_gap, .. } = result;
         let heights = folder.join(HEIGHTS_FILE);
         let height = heights.is_file().then(|| in_cell(&heights, pressure.grid().cell_ratio())).transpose()?;
         // With --output-grid, pressure and gap are on a coarser grid than the heights.

@@ -24,6 +24,12 @@ pub(crate) const PAGE_FILE: &str = "report.html";
 /// The record of a study.
 pub(crate) const STUDY_FILE: &str = "study.json";
 
+/// The record of shear curves.
+pub(crate) const SHEAR_FILE: &str = "shear.json";
+
+/// The table of shear curves.
+pub(crate) const SHEAR_TABLE: &str = "shear.csv";
+
 /// The picture of a running solve.
 pub(crate) const WATCH_FILE: &str = "watch.png";
 

@@ -38,7 +38,7 @@ impl SpotSizes {
         if !result.is_of_elements() {
             return None;
         }
-        let ResultFolder { side, e_star, pressure, mut gap, plastic_gap, summary } = result;
+        let ResultFolder { side, e_star, pressure, mut gap, plastic_gap, summary, .. } = result;
         // Where the hardness limits the pressure, edges follow from the overlap that plastic flow has removed.
         for (gap, overlap) in gap.values_mut().iter_mut().zip(plastic_gap.iter().flat_map(Field::values)) {
             *gap -= overlap;

@@ -1,6 +1,6 @@
 //! The function that shears a solved contact.
 
-use rc_core::{DVec2, Observer};
+use rc_core::{Boundary, DVec2, Grid, Observer};
 
 use crate::descent::info::Status;
 use crate::problem::capabilities::{Feature, refusal};
@@ -62,9 +62,11 @@ impl Plan<'_> {
         if let Some(refused) = refusal(&all, Some(normal.method())) {
             return Err(refused.into());
         }
-        self.check_memory()?;
-        let smaller = self.under(smaller_load(normal, params)?)?.solve(observer)?;
-        let solution = self.sheared([normal, &smaller], params, observer);
+        let load = smaller_load(normal, params)?;
+        let contact = Contact::new(normal.pressure(), params.friction, self.problem.boundary());
+        self.check_memory(contact.part())?;
+        let smaller = self.under(load)?.solve(observer)?;
+        let solution = self.sheared((&contact, [normal, &smaller]), params, observer);
         let tolerance = tolerance(self.bound);
         if solution.info.error <= tolerance {
             Ok(solution)
@@ -76,12 +78,11 @@ impl Plan<'_> {
     /// The tractions between the normal contacts under both loads.
     fn sheared(
         &self,
-        [normal, smaller]: [&Solution<'_>; 2],
+        (contact, [normal, smaller]): (&Contact, [&Solution<'_>; 2]),
         params: &ShearParams,
         observer: &dyn Observer,
     ) -> ShearSolution {
         let &ShearParams { friction, control, direction, poisson } = params;
-        let contact = Contact::new(normal.pressure(), friction);
         let pressures = [normal.pressure(), smaller.pressure()].map(|pressure| contact.values(pressure));
         let mut start: Vec<DVec2> =
             pressures[0].iter().zip(&pressures[1]).map(|(p, q)| friction * (p - q) * direction).collect();
@@ -90,8 +91,8 @@ impl Plan<'_> {
             ShearControl::MeanShear(shear) => Prescribed::Total(shear * contact.n_grid() as f64 * direction),
             ShearControl::Displacement(given) => Prescribed::Displacement(given * direction),
         };
-        let operator = TangentialOperator::new(normal.grid(), self.problem.kernel.get(), poisson);
-        let rounds = Rounds { operator: &operator, contact: &contact, prescribed };
+        let operator = TangentialOperator::new((normal.grid(), contact.part()), self.problem.kernel.get(), poisson);
+        let rounds = Rounds { operator: &operator, contact, prescribed };
         rounds.project(&mut start);
         let mut found = rounds.certified(start, params.compliance_ratio() * difference * direction);
         // A uniform traction displaces nothing.
@@ -105,7 +106,7 @@ impl Plan<'_> {
             ShearControl::MeanShear(_) if poisson == 0.0 => difference,
             ShearControl::MeanShear(_) => found.bound.displacement.dot(direction),
         };
-        let slips = slips(&contact, &found.vectors);
+        let slips = slips(contact, &found.vectors);
         let area = normal.area().fraction;
         let stick_area = if poisson == 0.0 {
             smaller.area().fraction.min(area)
@@ -123,13 +124,13 @@ impl Plan<'_> {
             error: if is_uniform { 0.0 } else { found.bound.error() },
             rounds: found.rounds,
         };
-        with_fields(info, direction, &contact, (&found, &slips))
+        with_fields(info, direction, contact, (&found, &slips))
     }
 
     /// Refuses fields that do not fit into memory.
-    fn check_memory(&self) -> Result<(), ShearError> {
+    fn check_memory(&self, part: Grid) -> Result<(), ShearError> {
         let grid = self.problem.heights.grid();
-        let period = operator::period(grid, self.problem.kernel.get());
+        let period = if self.problem.boundary() == Boundary::Free { operator::padded_grid(part) } else { grid };
         let needed = period.len() as u64 * operator::BYTES_PER_ELEMENT + grid.len() as u64 * BYTES_PER_ELEMENT;
         match self.params.memory_limit {
             Some(limit) if needed > limit => Err(ShearError::Memory { grid, needed, limit }),

@@ -24,14 +24,16 @@ pub(super) struct TangentialOperator {
 }
 
 impl TangentialOperator {
-    /// The operator on `grid` of the half-space of `kernel` with Poisson's ratio `poisson`.
-    pub(super) fn new(grid: Grid, kernel: &dyn Kernel, poisson: f64) -> Self {
+    /// The operator on a part of `grid`, of the half-space of `kernel` with Poisson's ratio `poisson`.
+    ///
+    /// Only with free borders may the part be smaller than the grid.
+    pub(super) fn new((grid, part): (Grid, Grid), kernel: &dyn Kernel, poisson: f64) -> Self {
         let ratio = poisson / (1.0 - poisson);
         match kernel.free_response(grid) {
             Some(response) => {
-                let around = period(grid, kernel);
-                let factors = of_responses((grid, around), ratio, &response);
-                Self { grid, around, factors }
+                let around = padded_grid(part);
+                let factors = of_responses((part, around), grid.spacing(), (ratio, &response));
+                Self { grid: part, around, factors }
             }
             None => Self { grid, around: grid, factors: of_symbol(grid, ratio, &kernel.symbol(grid)) },
         }
@@ -57,14 +59,10 @@ impl TangentialOperator {
     }
 }
 
-/// The elements of the transforms for `grid`: those of the grid, or of a padded one with free borders.
-pub(super) fn period(grid: Grid, kernel: &dyn Kernel) -> Grid {
-    if kernel.free_response(grid).is_none() {
-        return grid;
-    }
-    let [px, py] = [grid.nx(), grid.ny()].map(padded_side);
-    let ratio = grid.cell_ratio() * (py as f64 / grid.ny() as f64) / (px as f64 / grid.nx() as f64);
-    Grid::in_cell(px, py, ratio).expect("the normal contact was solved on this grid")
+/// The elements of the transforms with free borders. Their spacing does not matter.
+pub(super) fn padded_grid(part: Grid) -> Grid {
+    let [px, py] = [part.nx(), part.ny()].map(padded_side);
+    Grid::new(px, py).expect("the normal contact was solved on such a grid, or a larger one")
 }
 
 /// Factors from the symbol of a periodic kernel.
@@ -91,10 +89,10 @@ fn of_symbol(grid: Grid, ratio: f64, symbol: &(dyn Fn(usize, usize) -> f64 + Syn
 /// Factors from the responses to one element, which are zero beyond the elements of `grid`.
 fn of_responses(
     (grid, around): (Grid, Grid),
-    ratio: f64,
-    normal: &(dyn Fn(usize, usize) -> f64 + Sync),
+    spacing: DVec2,
+    (ratio, normal): (f64, &(dyn Fn(usize, usize) -> f64 + Sync)),
 ) -> Vec<[f64; 3]> {
-    let (spacing, scale) = (grid.spacing(), 1.0 / around.len() as f64);
+    let scale = 1.0 / around.len() as f64;
     let (px, py) = (around.nx(), around.ny());
     let signed = |i: usize, n: usize| if 2 * i > n { i as i64 - n as i64 } else { i as i64 };
     let transform = |part: usize| {
@@ -162,7 +160,7 @@ mod tests {
         ] {
             let field = Field::from_fn(grid, |at| (17.0 * at.x).sin() + (at.y * 40.0).cos().powi(3) + 0.2);
             let twice = Field::from_fn(grid, |at| (3.0 * at.x * at.y).exp());
-            let operator = TangentialOperator::new(grid, kernel, 0.0);
+            let operator = TangentialOperator::new((grid, grid), kernel, 0.0);
             let found = operator.apply(&[field.clone(), twice.clone()]);
             for (found, source) in found.iter().zip([&field, &twice]) {
                 let expected = normal(grid, kernel, source);
@@ -177,7 +175,7 @@ mod tests {
         let grid = Grid::square(32).expect("a grid");
         let wave = Field::from_fn(grid, |at| (TAU * (2.0 * at.x + at.y)).cos());
         let none = Field::zeros(grid);
-        let operator = TangentialOperator::new(grid, &Spectral, 0.3);
+        let operator = TangentialOperator::new((grid, grid), &Spectral, 0.3);
         let q = DVec2::new(2.0, 1.0).normalize();
         let length = TAU * 5.0_f64.sqrt();
         for (direction, factor) in [(q, 1.0), (q.perp(), 1.0 / 0.7)] {
@@ -200,7 +198,7 @@ mod tests {
             Field::from_fn(grid, |at| (5.0 * at.y).cos() - at.x),
         ];
         let poisson = 0.4;
-        let found = TangentialOperator::new(grid, &FreeLove, poisson).apply(&fields);
+        let found = TangentialOperator::new((grid, grid), &FreeLove, poisson).apply(&fields);
         let response = FreeLove.free_response(grid).expect("a response");
         let (nx, spacing) = (grid.nx(), grid.spacing());
         for i in 0..grid.len() {

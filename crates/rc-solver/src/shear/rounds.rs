@@ -137,7 +137,7 @@ impl Rounds<'_> {
     }
 
     fn apply(&self, tractions: &[DVec2]) -> Vec<DVec2> {
-        self.contact.vectors(&self.operator.apply(&self.contact.fields(tractions)))
+        self.contact.vectors(&self.operator.apply(&self.contact.on_part(tractions)))
     }
 
     fn bound(&self, tractions: &[DVec2], displacements: &[DVec2], guess: DVec2) -> Bound {

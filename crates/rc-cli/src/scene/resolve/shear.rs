@@ -1,7 +1,7 @@
 //! The keys of friction with partial slip.
 
-use rc_core::Units;
 use rc_core::quantity::engineering;
+use rc_core::{DVec2, Units};
 use rc_solver::{Control, ShearControl, ShearParams};
 
 use super::checks::positive;
@@ -103,8 +103,13 @@ pub(super) fn shear(keys: &ContactKeys, (control, units): (Control, Units)) -> R
              (rubber), two like bodies (young2, poisson2) or poisson 0, or neglect the coupling with uncoupled"
         )));
     }
-    let params = ShearParams { friction, control, direction: unit_vector(angle), poisson: coupling.poisson };
+    let params = ShearParams { friction, control, direction: direction(keys), poisson: coupling.poisson };
     Ok(Some(ShearSetup { params, note: coupling.note() }))
+}
+
+/// The unit vector along the shear of these keys.
+pub(crate) fn direction(keys: &ContactKeys) -> DVec2 {
+    unit_vector(keys.shear_angle.unwrap_or(0.0))
 }
 
 /// Refuses keys of a shear without a friction.
