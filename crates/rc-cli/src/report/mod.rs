@@ -66,7 +66,7 @@ fn html(folder: &Path, quiet: bool) -> Result<String, CliError> {
             None if folder.join(SUMMARY_FILE).exists() => Ok(document::html(&contact::page(folder)?)),
             None => Err(CliError::in_file(
                 folder,
-                "not a result; give the --out folder of a solve, a sweep, a study or rc shear",
+                "not a result; give the --out folder of a solve, a sweep or a study, or of rc shear",
             )),
         };
     }

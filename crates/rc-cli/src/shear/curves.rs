@@ -43,7 +43,7 @@ impl<'a> SurfaceCurve<'a> {
         let keys = surface.and_then(|surface| keys_of(&surface["contact"]));
         check_contact(path, rows, keys.as_ref())?;
         let is_line = surface.is_some_and(|surface| surface["surface"]["line"] == true);
-        let coupling = keys.as_ref().map(Coupling::of).unwrap_or(Coupling { poisson: 0.0, beta: None });
+        let coupling = keys.as_ref().map_or(Coupling { poisson: 0.0, beta: None }, Coupling::of);
         let used = poisson.unwrap_or(coupling.poisson);
         let params = ShearParams { poisson: used, ..ShearParams::new(1.0, 1.0) };
         let compliance_ratio = if is_line { 1.0 } else { params.compliance_ratio() };
