@@ -5,7 +5,7 @@
 
 use rc_core::Observer;
 
-use crate::descent::state::Descent;
+use crate::descent::state::{Descent, Follows};
 use crate::descent::stop::Stopped;
 use crate::descent::sums::GapSums;
 use crate::parallel;
@@ -22,6 +22,12 @@ const ENOUGH: f64 = 0.5;
 /// Factor of the next steps after a round of which a small part lowers the energy, and after one that lowers it.
 const SHORTER: f64 = 0.25;
 const LONGER: f64 = 2.0;
+
+/// Rounds without the approximate inverse after a direction that clipping turns uphill: at first, and at most.
+///
+/// The residual itself leads down even if some of its step is clipped. An inverse that mixes far elements, as that of a
+/// solid whose modulus changes much with the direction of waves, may not.
+const PLAIN: [u32; 2] = [8, 64];
 
 /// Whether the energy has risen from one round to the next.
 pub(crate) fn has_risen(before: &GapSums, after: &GapSums) -> bool {
@@ -46,18 +52,23 @@ impl Descent<'_> {
             // Directions are conjugate only after a step to the minimum.
             self.start_afresh();
         }
-        let Ok(after) = self.round(1, sums, observer) else {
+        let round = self.round(1, sums, observer);
+        self.plain.rounds = self.plain.rounds.saturating_sub(1);
+        let Ok(after) = round else {
             (self.pressure, self.gap) = before;
             return Err(Stopped);
         };
-        if !has_risen(sums, &after) {
+        // The work of a gap that follows changes only is not that of its pressure, and tells no energy.
+        let (mut part, mut has_risen) = (1.0, self.follows == Follows::Pressure && has_risen(sums, &after));
+        if has_risen || self.follows == Follows::Changes {
+            part = self.best_part(&before.0, &before.1, zero_gap);
+            has_risen |= part < ENOUGH;
+        }
+        if !has_risen {
             self.step_factor = (LONGER * self.step_factor).min(1.0);
             return Ok(after);
         }
-        let part = self.best_part(&before.0, &before.1, zero_gap);
-        if part < ENOUGH {
-            self.step_factor *= SHORTER;
-        }
+        self.shorten(part);
         for (new, old) in [(&mut self.pressure, &before.0), (&mut self.gap, &before.1)] {
             let len = self.layout.len();
             parallel::for_each(new.chunks_mut(len).zip(old.chunks(len)), |(new, old)| {
@@ -70,6 +81,17 @@ impl Descent<'_> {
         self.start_afresh();
         let sums = self.rescale(1.0);
         Ok(self.meet_penetration(sums))
+    }
+
+    /// What follows a round of which this part lowers the energy most.
+    fn shorten(&mut self, part: f64) {
+        if part == 0.0 && self.plain.rounds == 0 {
+            self.plain.next = (2 * self.plain.next).clamp(PLAIN[0], PLAIN[1]);
+            self.plain.rounds = self.plain.next;
+            self.step_factor = 1.0;
+        } else if part < ENOUGH {
+            self.step_factor *= SHORTER;
+        }
     }
 
     /// Forgets the last direction and the choice of active elements.

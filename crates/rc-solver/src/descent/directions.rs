@@ -116,13 +116,15 @@ impl ConjugateDirections {
         (steps, preconditioned.chunks_mut(len))
     }
 
-    /// Applies the preconditioner to the residual that was written.
+    /// Applies the preconditioner, if there is one, to the residual that was written.
     pub(crate) fn precondition(
         &mut self,
-        operator: &mut dyn PreconditionedOperator,
+        operator: Option<&mut (dyn PreconditionedOperator + '_)>,
         layout: &BlockLayout,
     ) -> PreconditionedSums {
-        operator.precondition(&self.active, &mut self.preconditioned);
+        if let Some(operator) = operator {
+            operator.precondition(&self.active, &mut self.preconditioned);
+        }
         let len = layout.len();
         let blocks = self.displacement.chunks(len).zip(self.active.chunks(len)).zip(self.preconditioned.chunks(len));
         let sums = parallel::map(blocks, |((displacement, active), preconditioned)| {

@@ -87,8 +87,9 @@ impl Descent<'_> {
     fn step_length(&mut self, set: &ActiveSet, observer: &dyn Observer) -> Result<f64, Stopped> {
         unless_stopped(observer)?;
         let corrections = &mut *self.operators.corrections;
-        self.info.preconditioner_applications += 1;
-        let sums = self.directions.precondition(corrections, &self.layout);
+        let inverse = (self.plain.rounds == 0).then_some(&mut *corrections);
+        self.info.preconditioner_applications += usize::from(inverse.is_some());
+        let sums = self.directions.precondition(inverse, &self.layout);
         let mean = if set.fixed_mean { sums.preconditioned / set.n } else { 0.0 };
         let beta = ((sums.with_displacement - mean * sums.displacement) / self.curvature).max(0.0);
         let shift = if set.fixed_mean { mean - beta * set.direction_mean } else { 0.0 };

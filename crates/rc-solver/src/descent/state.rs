@@ -32,6 +32,15 @@ pub(crate) enum Follows {
     Changes,
 }
 
+/// Rounds whose direction is the residual, without the approximate inverse.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PlainRounds {
+    /// Number of such rounds from now on.
+    pub(crate) rounds: u32,
+    /// Their number the last time.
+    pub(crate) next: u32,
+}
+
 /// Pressure, gap and everything that one level needs to improve them.
 pub(crate) struct Descent<'a> {
     pub(crate) problem: &'a Problem,
@@ -45,6 +54,8 @@ pub(crate) struct Descent<'a> {
     pub(crate) curvature: f64,
     /// Factor of the length of steps. It is 1 unless rounds would raise the energy.
     pub(crate) step_factor: f64,
+    /// Rounds that follow the residual itself.
+    pub(crate) plain: PlainRounds,
     /// Whether the last projection has chosen the active elements.
     pub(crate) is_chosen: bool,
     /// The gap of elements in contact.
@@ -101,6 +112,7 @@ impl<'a> Descent<'a> {
             directions,
             curvature: f64::INFINITY,
             step_factor: 1.0,
+            plain: PlainRounds::default(),
             is_chosen: false,
             zero_gap: 0.0,
             pressed: f64::INFINITY,

@@ -139,7 +139,7 @@ pub(crate) fn search(
             operator.set_mean(stiffness);
         }
         take_step(length, &mut directions, &mut residual, &layout);
-        beta = directions.precondition(operator, &layout).with_displacement / sums.curvature;
+        beta = directions.precondition(Some(&mut *operator), &layout).with_displacement / sums.curvature;
     }
     stiffness
 }
@@ -169,7 +169,7 @@ fn first_direction(
     }
     let mut directions = ConjugateDirections::along(active, residual.to_vec());
     operator.set_mean(1.0);
-    directions.precondition(operator, &layout);
+    directions.precondition(Some(operator), &layout);
     directions
 }
 

@@ -13,7 +13,7 @@ use crate::grid::stiffness::contact_stiffness;
 use crate::grid::uniform_operator::UniformOperator;
 use crate::problem::kernel::OwnedKernel;
 use crate::problem::support::Support;
-use crate::solution::contact_area::moduli::moduli;
+use crate::solution::contact_area::sliding_edges::SlidingEdges;
 use crate::solution::gap_part::GapPart;
 use crate::solution::observables::Observables;
 use crate::solution::rows::{Halted, Receiver, Rows, TakeRows};
@@ -37,8 +37,8 @@ pub(crate) enum Response<'a> {
         bias: EdgeBias,
         /// The boundary of the heights.
         boundary: Boundary,
-        /// The moduli of edges under a sliding surface.
-        moduli: Option<[[f64; 2]; 3]>,
+        /// The edges under a sliding surface.
+        edges: Option<SlidingEdges>,
     },
 }
 
@@ -53,8 +53,8 @@ impl Response<'_> {
         };
         match (self, shared) {
             (_, Some(kernel)) => Response::Kernel(OwnedKernel::Shared(kernel)),
-            (Self::Outlived { stiffness, conductance, displacement, bias, boundary, moduli }, _) => {
-                Response::Outlived { stiffness, conductance, displacement, bias, boundary, moduli }
+            (Self::Outlived { stiffness, conductance, displacement, bias, boundary, edges }, _) => {
+                Response::Outlived { stiffness, conductance, displacement, bias, boundary, edges }
             }
             (response, _) => Response::Outlived {
                 stiffness: response.stiffness(solution, hardness),
@@ -62,7 +62,7 @@ impl Response<'_> {
                 displacement: response.displacement(&solution.pressure),
                 bias: response.edge_bias(solution.pressure.grid()),
                 boundary: response.boundary(solution.pressure.grid()),
-                moduli: response.moduli(&solution.pressure),
+                edges: response.sliding_edges(&solution.pressure),
             },
         }
     }
@@ -76,12 +76,12 @@ impl Response<'_> {
         }
     }
 
-    /// The moduli of edges under a sliding surface.
-    fn moduli(&self, pressure: &Field) -> Option<[[f64; 2]; 3]> {
+    /// The edges of contacts under a sliding surface.
+    fn sliding_edges(&self, pressure: &Field) -> Option<SlidingEdges> {
         match self {
-            Self::Kernel(kernel) => moduli(kernel.get(), pressure),
+            Self::Kernel(kernel) => SlidingEdges::of(kernel.get(), pressure),
             Self::Operator(_) => None,
-            Self::Outlived { moduli, .. } => *moduli,
+            Self::Outlived { edges, .. } => *edges,
         }
     }
 
@@ -191,8 +191,8 @@ impl Solved for GridSolved<'_> {
 
     fn observables(&self) -> Observables {
         let boundary = self.response.boundary(self.grid());
-        let moduli = self.response.moduli(&self.solution.pressure);
-        Observables::of(&self.solution, self.hardness, self.response.edge_bias(self.grid()), boundary, moduli)
+        let edges = self.response.sliding_edges(&self.solution.pressure);
+        Observables::of(&self.solution, self.hardness, self.response.edge_bias(self.grid()), boundary, edges)
     }
 
     fn stiffness(&self) -> f64 {

@@ -187,7 +187,6 @@ impl<'a> SlidingDescent<'a> {
         (most_iterations, observer): (usize, &dyn Observer),
     ) -> Result<GapSums, Stopped> {
         let ([steps, rounds], mut sums) = (fallback.next(), *sums);
-        let steps_of_round = if self.storage.keeps_steps() { 2 } else { 1 };
         for _ in 0..steps {
             if self.descent.info.iterations >= most_iterations {
                 break;
@@ -196,7 +195,7 @@ impl<'a> SlidingDescent<'a> {
             self.exchange();
             for _ in 0..rounds {
                 self.work.storage_rounds += 1;
-                let round = self.descent.round(steps_of_round, &sums, observer);
+                let round = self.descent.descending_round(&sums, observer);
                 if round.is_err() {
                     self.exchange();
                 }

@@ -8,6 +8,7 @@ use crate::parallel;
 use crate::solution::contact_area::area::{ContactArea, Rim};
 use crate::solution::contact_area::plastic::PlasticContact;
 use crate::solution::contact_area::plastic::PlasticEdges;
+use crate::solution::contact_area::sliding_edges::SlidingEdges;
 
 /// Observables of a solution, in units of λ and E*.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,20 +48,19 @@ impl Observables {
     /// It passes over the fields once, or twice with a hardness. `bias` shifts the edges of contacts. The pressure is
     /// at most the `hardness`.
     ///
-    /// Under a sliding surface, edges have the first of `moduli`. The others show how far the area depends on them.
+    /// `sliding` has the edges under a sliding surface.
     pub(crate) fn of(
         solution: &GridSolution,
         hardness: f64,
         bias: EdgeBias,
         boundary: Boundary,
-        moduli: Option<[[f64; 2]; 3]>,
+        sliding: Option<SlidingEdges>,
     ) -> Self {
         let fields = [&solution.pressure, &solution.gap];
-        let area = match moduli {
+        let area = match sliding {
             None => ContactArea::of_hard(fields, hardness, bias, boundary),
-            Some(moduli) => {
-                let of_moduli = |moduli| ContactArea::with_moduli(fields, hardness, bias, moduli);
-                ContactArea::of_moduli(moduli.map(of_moduli))
+            Some(edges) => {
+                ContactArea::of_sliding(&edges, |moduli| ContactArea::with_moduli(fields, hardness, bias, moduli))
             }
         };
         let plastic = hardness.is_finite().then(|| PlasticEdges::of(fields, hardness, bias, boundary));
@@ -221,11 +221,17 @@ fn rms_pressure_error(
     Some(0.5 * parts.into_iter().fold(0.0, f64::hypot) / rms_pressure)
 }
 
+/// Widening of the error of ⟨p²⟩ at edges with the loss tangent of the shortest wave, under a sliding surface.
+///
+/// The modulus changes within an element of the edge, and the pressure is no square root there. Without it, the bars of
+/// 74 to 94 % of 300 rough scenes held.
+const OF_LOSS: f64 = 2.0;
+
 /// Estimated error of ⟨p²⟩ at edges, but for thin rims.
 fn error_of_squares(rim: &Rim) -> f64 {
     let scatter = SQUARE_SCATTER * rim.typical_squares / rim.independent_smooth.max(1.0).sqrt();
     let (edges, lone) = (ERROR_OF_SQUARES * rim.per_square * rim.squares, ERROR_OF_LONE * rim.lone_squares);
-    scatter.hypot(edges).hypot(lone)
+    (1.0 + OF_LOSS * rim.loss) * scatter.hypot(edges).hypot(lone)
 }
 
 /// 95 % error of the mean gap, relative to the penetration and to the square of the relative error of the area.

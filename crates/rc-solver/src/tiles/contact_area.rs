@@ -8,8 +8,8 @@ use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet};
 
 use crate::solution::contact_area::area::ContactArea;
 use crate::solution::contact_area::edge_sums::EdgeSums;
-use crate::solution::contact_area::moduli::edge_moduli;
 use crate::solution::contact_area::plastic::{PlasticEdges, left};
+use crate::solution::contact_area::sliding_edges::SlidingEdges;
 use crate::tiles::mesh::{Mesh, Surroundings};
 
 /// Number of tiles that are summed together.
@@ -44,8 +44,8 @@ impl Values<'_> {
         let at_rest = self.contact_area(finest);
         // Each contact from edge to edge has two of the edges of an axis.
         let chord = 4.0 * at_rest.cells * finest.len() as f64 / at_rest.perimeter_edges.max(1) as f64;
-        let areas = edge_moduli(chord, finest.spacing().x, |q| compliance.at(q).norm());
-        ContactArea::of_moduli(areas.map(|moduli| Self { moduli, ..*self }.contact_area(finest)))
+        let edges = SlidingEdges::of_chord([chord, at_rest.cells], finest.spacing().x, |q| compliance.at(q));
+        ContactArea::of_sliding(&edges, |moduli| Self { moduli, ..*self }.contact_area(finest))
     }
 
     /// The plastic part of the contact. `None` without a hardness.

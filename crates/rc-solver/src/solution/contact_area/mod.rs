@@ -9,5 +9,5 @@ pub(crate) mod corner;
 pub(crate) mod edge;
 pub(crate) mod edge_sums;
 pub(crate) mod kind;
-pub(crate) mod moduli;
 pub(crate) mod plastic;
+pub(crate) mod sliding_edges;
