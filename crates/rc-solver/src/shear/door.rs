@@ -62,11 +62,12 @@ impl Plan<'_> {
         if let Some(refused) = refusal(&all, Some(normal.method())) {
             return Err(refused.into());
         }
-        let load = smaller_load(normal, params)?;
+        let compliance = Compliance::of(params, self.problem.heights.grid(), self.problem.boundary());
+        let load = smaller_load(normal, params, compliance.ratio)?;
         let contact = Contact::new(normal.pressure(), params.friction, self.problem.boundary());
         self.check_memory(contact.part())?;
         let smaller = self.under(load)?.solve(observer)?;
-        let solution = self.sheared((&contact, [normal, &smaller]), params, observer);
+        let solution = self.sheared((&contact, [normal, &smaller]), (params, compliance), observer);
         let tolerance = tolerance(self.bound);
         if solution.info.error <= tolerance {
             Ok(solution)
@@ -79,7 +80,7 @@ impl Plan<'_> {
     fn sheared(
         &self,
         (contact, [normal, smaller]): (&Contact, [&Solution<'_>; 2]),
-        params: &ShearParams,
+        (params, compliance): (&ShearParams, Compliance),
         observer: &dyn Observer,
     ) -> ShearSolution {
         let &ShearParams { friction, control, direction, poisson } = params;
@@ -94,7 +95,7 @@ impl Plan<'_> {
         let operator = TangentialOperator::new((normal.grid(), contact.part()), self.problem.kernel.get(), poisson);
         let rounds = Rounds { operator: &operator, contact, prescribed };
         rounds.project(&mut start);
-        let mut found = rounds.certified(start, params.compliance_ratio() * difference * direction);
+        let mut found = rounds.certified(start, compliance.ratio * difference * direction);
         // A uniform traction displaces nothing.
         let is_uniform = smaller.status() == Status::FullContact;
         let tolerance = tolerance(self.bound);
@@ -103,12 +104,12 @@ impl Plan<'_> {
         }
         let displacement = match control {
             ShearControl::Displacement(given) => given,
-            ShearControl::MeanShear(_) if poisson == 0.0 => difference,
+            ShearControl::MeanShear(_) if compliance.is_exact => compliance.ratio * difference,
             ShearControl::MeanShear(_) => found.bound.displacement.dot(direction),
         };
         let slips = slips(contact, &found.vectors);
         let area = normal.area().fraction;
-        let stick_area = if poisson == 0.0 {
+        let stick_area = if compliance.is_exact {
             smaller.area().fraction.min(area)
         } else {
             area * slips.iter().filter(|slips| !**slips).count() as f64 / slips.len().max(1) as f64
@@ -119,7 +120,7 @@ impl Plan<'_> {
             displacement,
             slip_area: area - stick_area,
             stick_area,
-            stiffness: normal.stiffness() / params.compliance_ratio(),
+            stiffness: normal.stiffness() / compliance.ratio,
             slip_work: 0.0,
             error: if is_uniform { 0.0 } else { found.bound.error() },
             rounds: found.rounds,
@@ -139,8 +140,30 @@ impl Plan<'_> {
     }
 }
 
+/// Tangential against normal compliance.
+#[derive(Clone, Copy)]
+struct Compliance {
+    /// Their ratio along the shear.
+    ratio: f64,
+    /// Whether it is that of every wave, so that two normal contacts are the answer.
+    is_exact: bool,
+}
+
+impl Compliance {
+    /// Waves of a profile are all along it: it is sheared in plane strain along them, and in antiplane strain across them.
+    fn of(params: &ShearParams, grid: Grid, boundary: Boundary) -> Self {
+        let &ShearParams { poisson, direction, .. } = params;
+        if grid.ny() > 1 || boundary == Boundary::Free {
+            return Self { ratio: params.compliance_ratio(), is_exact: poisson == 0.0 };
+        }
+        let across = direction.y * direction.y;
+        let is_axis = direction.x == 0.0 || direction.y == 0.0;
+        Self { ratio: 1.0 - across + across / (1.0 - poisson), is_exact: poisson == 0.0 || is_axis }
+    }
+}
+
 /// The load of the second contact.
-fn smaller_load(normal: &Solution<'_>, params: &ShearParams) -> Result<Control, ShearError> {
+fn smaller_load(normal: &Solution<'_>, params: &ShearParams, compliance_ratio: f64) -> Result<Control, ShearError> {
     let info = normal.info();
     match params.control {
         ShearControl::MeanShear(shear) => {
@@ -153,7 +176,7 @@ fn smaller_load(normal: &Solution<'_>, params: &ShearParams) -> Result<Control, 
             }
         }
         ShearControl::Displacement(displacement) => {
-            let per_depth = params.friction * params.compliance_ratio();
+            let per_depth = params.friction * compliance_ratio;
             // In full contact the penetration does not grow with the load.
             let is_full = normal.status() == Status::FullContact;
             let depth = if is_full { info.penetration.min(info.penetration_full_contact) } else { info.penetration };

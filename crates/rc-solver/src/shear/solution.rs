@@ -17,8 +17,8 @@ pub struct ShearInfo {
     pub stick_area: f64,
     /// Stiffness dτ/dd at the start of shear, before any slip, in E*/λ.
     ///
-    /// It is the contact stiffness divided by [`crate::ShearParams::compliance_ratio`]. For ν > 0 this is exact for
-    /// isotropic contacts only. Infinite in full contact.
+    /// It is the contact stiffness divided by [`crate::ShearParams::compliance_ratio`], which for ν > 0 is exact for
+    /// isotropic contacts only. That of a profile is exact along it and across. Infinite in full contact.
     pub stiffness: f64,
     /// Energy that slip dissipates, per nominal area, in E* λ.
     pub slip_work: f64,
