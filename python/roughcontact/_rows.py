@@ -72,7 +72,7 @@ def solve_row(job: Job) -> Row:
         _replace(job.group, lambda path: _write_group(result, path))
         fields = FieldsAt(socket.gethostname(), job.group)
     keeps = job.keeps_result or result.failure is not None
-    return Row(_core.cells(result._source.summary_json(), result.scene), result.failure, result if keeps else None, fields)
+    return Row(_core.cells(result._source.summary_json(), result.scene, job.options.get("creep")), result.failure, result if keeps else None, fields)
 
 
 def _replace(final: str, write: Callable[[str], None]) -> None:

@@ -101,6 +101,8 @@ def solve(
     boundary: Boundary | None = None,
     layer_thickness: Quantity | None = None,
     layer_poisson: float | None = None,
+    substrate_young: Quantity | None = None,
+    substrate_poisson: float | None = None,
     method: Method | None = None,
     border_level: int | None = None,
     energy_tolerance: float | None = None,
@@ -191,7 +193,10 @@ def solve(
         is the displacement of a rigid body since first touch. Only the kernel love has free borders.
     layer_thickness, layer_poisson : float, optional
         An elastic layer of this thickness (m), bonded to a rigid base, instead of the half-space. ``layer_poisson``
-        is Poisson's ratio of the layer. Default: ``poisson``. With ``e_star`` it must be given. Only the uniform method solves layers.
+        is Poisson's ratio of the layer. Default: ``poisson``. With ``e_star`` it must be given.
+    substrate_young, substrate_poisson : float, optional
+        Young's modulus (Pa) and Poisson's ratio of an elastic half-space below the layer, instead of the rigid base. The layer
+        is then a coating.
     method : {"adaptive", "uniform", "gauss-seidel"}, optional
         How the problem is solved. Default: adaptive, or uniform where that is cheaper.
     border_level : int, default 0
@@ -281,6 +286,7 @@ def solve_keys(
     kernel: Kernel | None = None,
     progress: ProgressOption = False,
     is_row: bool = False,
+    creep: float | None = None,
 ) -> Result:
     """Solves the problem of these keys, whether or not it converges."""
     keys, array, sides, _ = problem
@@ -297,6 +303,7 @@ def solve_keys(
         "kernel": symbol,
         "progress": None if function is None else callback(function),
         "is_row": is_row,
+        "creep": creep,
     }
     try:
         solved, unfinished, ended = _core.solve(keys, given)

@@ -45,10 +45,13 @@ Seeds = Union[Iterable[int], str]
 #: Values of keys by their names, one by one, or as text of the command line: ``"5MPa,10MPa"``, ``"1e-5:1e-3:8"``.
 Vary = Mapping[str, Union[Sequence[Any], NDArray[np.float64], str]]
 
+#: Speeds or times one by one, with or without units, or text of the command line: ``"1mm/s:1m/s:4"`` (geometric).
+Swept = Union[Sequence[Union[float, str]], NDArray[np.float64], str]
+
 #: Arguments that are no keys of a scene.
 _OPTIONS = frozenset(
     {
-        *("heights", "scene", "kernel", "pressures", "penetrations", "seeds", "vary"),
+        *("heights", "scene", "kernel", "pressures", "penetrations", "seeds", "vary", "speeds", "times"),
         *("out", "resume", "fields", "executor", "keep_results", "progress", "check", "strict"),
     }
 )
@@ -62,6 +65,8 @@ def sweep(
     penetrations: Loads | None = None,
     seeds: Seeds | None = None,
     vary: Vary | None = None,
+    speeds: Swept | None = None,
+    times: Swept | None = None,
     cell: Quantity | None = None,
     cell_y: Quantity | None = None,
     line: bool | None = None,
@@ -106,6 +111,8 @@ def sweep(
     boundary: Boundary | None = None,
     layer_thickness: Quantity | None = None,
     layer_poisson: float | None = None,
+    substrate_young: Quantity | None = None,
+    substrate_poisson: float | None = None,
     method: Method | None = None,
     border_level: int | None = None,
     energy_tolerance: float | None = None,
@@ -139,6 +146,11 @@ def sweep(
     vary : mapping of str to a sequence or str, optional
         Values of other keywords, such as ``{"hardness": ["5MPa", 1e7]}``. Each row has a column with the name of the
         keyword. Several keywords give all combinations.
+    speeds : sequence of float or str, or str, optional
+        Speeds (m/s) of a surface that slides, in the column ``speed``. Text is as for ``rc sweep --speeds``: ``"1e-6:1e1:20"``.
+    times : sequence of float or str, or str, optional
+        Times (s) of creep at rest under one pressure, in the column ``time``, as for ``rc sweep --times``. The load is
+        ``pressures=[...]`` of one value, or ``force``.
     force : float or str, optional
         Force (N) instead of the list of loads. A list of forces is ``vary={"force": [...]}``.
     threads : int, optional
@@ -192,7 +204,12 @@ def sweep(
     if strict:
         keys["strict"] = True
     problem = _anywhere(heights, keys, scene, strict)
-    planned = _plan(problem, kernel, (control, loads, _seeds(seeds, heights), varied), places)
+    if speeds is not None and "speed" in keys:
+        raise ValueError("speeds: is given with speed; give one of them")
+    if times is not None and (keep_results or fields):
+        raise ValueError("times: the pressure after a time is not that of an elastic contact; omit fields and keep_results")
+    swept = (_swept("speeds", speeds), _swept("times", times))
+    planned = _plan(problem, kernel, (control, loads, _seeds(seeds, heights), varied), swept, places)
     kept = planned.kept()
     if kept and keep_results:
         planned.end()
@@ -226,6 +243,16 @@ def _varied(vary: Vary | None) -> list[tuple[str, Any]]:
     if vary is None:
         return []
     return [(name, list_ if isinstance(list_, str) else [plain({name: value}).get(name) for value in list_]) for name, list_ in vary.items()]
+
+
+def _swept(name: str, values: Swept | None) -> str | None:
+    """A list of speeds or times as on the command line."""
+    if values is None or isinstance(values, str):
+        return values
+    words = [value if isinstance(value, str) else repr(float(value)) for value in values]
+    if not words:
+        raise ValueError(f"{name}: none is given")
+    return ",".join(words)
 
 
 def _control(pressures: Loads | None, penetrations: Loads | None, has_force: bool) -> tuple[str, list[float]]:
@@ -320,7 +347,11 @@ def _length_of(value: Any) -> float | None:
 
 
 def _plan(
-    problem: _Problem, kernel: Kernel | None, lists: tuple[str, list[float], list[int] | None, list[tuple[str, Any]]], places: _Places
+    problem: _Problem,
+    kernel: Kernel | None,
+    lists: tuple[str, list[float], list[int] | None, list[tuple[str, Any]]],
+    swept: tuple[str | None, str | None],
+    places: _Places,
 ) -> _core.Planned:
     keys, array, sides, _ = surface_of(problem.heights, problem.keys)
     if isinstance(kernel, str):
@@ -331,6 +362,8 @@ def _plan(
         "loads": loads,
         "seeds": seeds,
         "vary": vary,
+        "speeds": swept[0],
+        "times": swept[1],
         "heights": array,
         "sides": sides,
         "scene": problem.scene,
@@ -348,15 +381,17 @@ def _jobs(
     others: tuple[str, ProgressOption, bool, _Places],
 ) -> list[Job]:
     control, progress, keeps_result, places = others
-    options = {"scene": problem.scene, "kernel": kernel, "progress": progress}
+    options: dict[str, Any] = {"scene": problem.scene, "kernel": kernel, "progress": progress}
     rows, jobs = planned.rows(), []
     for index in planned.todo():
         seed, load, varied = rows[index]
         keys = {**problem.keys, **json.loads(varied), **({} if seed is None else {"seed": seed}), control: load}
-        # The load of the row is its mean pressure.
+        # The load of the row is its mean pressure. Its time is in this load.
         keys.pop("force", None)
+        keys.pop("time", None)
         group = None if places.groups is None else os.path.join(places.groups, f"{index + 1:04}.zarr")
-        jobs.append(Job(index, problem.heights, keys, options, keeps_result, planned.fields_folder(index), group))
+        row = {**options, "creep": planned.creep(index)}
+        jobs.append(Job(index, problem.heights, keys, row, keeps_result, planned.fields_folder(index), group))
     return jobs
 
 

@@ -1,9 +1,12 @@
 """A surface that slides over a solid that relaxes."""
 
+import csv
+
 import numpy as np
 import pytest
 
 import roughcontact as rc
+from roughcontact import _core
 
 SCENE = {"waves": 8, "grid": 64, "seed": 2, "cell": 0.01, "pressure": 4e5}
 
@@ -48,6 +51,62 @@ def test_a_sweep_over_speeds_has_the_numbers_of_each_solve():
     assert table["speed"].tolist() == [0, 1e-3, 1e-1]
     assert table["friction"].tolist()[1:] == [rc.solve(**SCENE, **solid, speed=speed).friction for speed in (1e-3, 1e-1)]
     assert table["friction"][0] == 0.0
+
+
+def _same_rows(table, folder):
+    """The cells of a table and of sweep.csv, but for times and memory."""
+    with open(folder / "sweep.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(table)
+    for name in ("control_value", "mean_pressure", "area_fraction", "penetration", "mean_gap", "contact_conductance"):
+        assert [float(row[name]) for row in rows] == table[name].tolist(), name
+    return rows
+
+
+def test_lists_of_speeds_and_times_are_those_of_the_command_line(tmp_path):
+    keys = {"seeds": [2], **{key: value for key, value in SCENE.items() if key not in ("pressure", "seed")}}
+    words = "sweep --waves 8 --grid 64 --seeds 2 --cell 0.01 --pressure 4e5 --prony [[3,0.001],[6,0.1]] --quiet".split()
+    solid = {"prony": [(3, 1e-3), (6, 0.1)]}
+    _core.run(["rc", *words, "--speeds", "1mm/s:0.1:3", "--out", str(tmp_path / "speeds")])
+    for speeds in ("1mm/s:0.1:3", ["1mm/s", 1e-2, np.float64(0.1)]):
+        table = rc.sweep(**keys, pressures=[4e5], **solid, speeds=speeds)
+        rows = _same_rows(table, tmp_path / "speeds")
+        assert [float(row["friction"]) for row in rows] == table["friction"].tolist()
+        assert table["speed"].tolist() == pytest.approx([1e-3, 1e-2, 1e-1], rel=1e-15)
+    _core.run(["rc", *words, "--times", "1ms:1s:3", "--out", str(tmp_path / "times")])
+    table = rc.sweep(**keys, pressures=[4e5], **solid, times=["1ms", 0.0316227766016838, 1.0], out=tmp_path / "python")
+    assert table["time"][0] == 1e-3 and (np.diff(table["area_fraction"]) > 0).all()
+    table = rc.sweep(**keys, pressures=[4e5], **solid, times="1ms:1s:3")
+    rows = _same_rows(table, tmp_path / "times")
+    assert [float(row["least_pressure_rise"]) for row in rows] == table["least_pressure_rise"].tolist()
+    assert (table["least_pressure_rise"] > 1).all() and "max_pressure" not in table[0] and "max_pressure" not in rows[0]
+    # Each continues the rows of the other.
+    again = rc.sweep(**keys, pressures=[4e5], **solid, times="1ms:1s:3", out=tmp_path / "times", resume=True)
+    assert again["area_fraction"].tolist() == table["area_fraction"].tolist()
+    # The load may be a force.
+    by_force = rc.sweep(**keys, force=40.0, **solid, times="1ms:1s:3")
+    assert by_force["area_fraction"].tolist() == pytest.approx(table["area_fraction"].tolist(), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"speeds": [1, -1], "pressures": [4e5]}, "give direction 180|--direction 180"),
+        ({"speeds": [1, 2], "speed": 1, "pressures": [4e5]}, "speeds: is given with speed"),
+        ({"speeds": "1,2Pa", "pressures": [4e5]}, "speeds: must be a speed in m/s"),
+        ({"times": [0, 1], "pressures": [4e5]}, "times: each time must be above 0"),
+        ({"times": [], "pressures": [4e5]}, "times: none is given"),
+        ({"times": [1, 2], "speeds": [1, 2], "pressures": [4e5]}, "times: the surface is at rest"),
+        ({"times": [1, 2], "pressures": [4e5, 1e5]}, "times: after the load falls"),
+        ({"times": [1, 2], "penetrations": [1e-6]}, "times: a solid creeps under a constant load"),
+        ({"times": [1, 2], "pressures": [4e5], "keep_results": True}, "times: the pressure after a time"),
+    ],
+)
+def test_lists_that_cannot_be_are_refused_in_one_line(keys, message):
+    scene = {key: value for key, value in SCENE.items() if key not in ("pressure", "seed")}
+    with pytest.raises(ValueError, match=message) as refused:
+        rc.sweep(**scene, glassy_ratio=10, relaxation_time=1e-2, **keys)
+    assert "\n" not in str(refused.value)
 
 
 @pytest.mark.parametrize(

@@ -80,7 +80,7 @@ fn of_study(folder: &Path) -> CliError {
 fn write(target: &Path, result: &ResultFolder) -> Result<Vec<String>, CliError> {
     let ResultFolder { pressure, gap, side, .. } = result;
     let of_elements = result.is_of_elements();
-    let contact = ContactPicture::of(pressure, 1.0, *side);
+    let contact = ContactPicture::of(pressure, 1.0, *side).sliding(result.direction);
     // For means over blocks, the picture of the solve is better than a new one, and stays.
     let (contact, contact_name) =
         if of_elements { (contact, "contact.png") } else { (contact.of_blocks(), "touched.png") };

@@ -9,10 +9,10 @@ use crate::study::record::words_with_error;
 
 /// A few aligned lines about a solved problem.
 ///
-/// `sides` are those of the cell in m, and `e_star` is E* in Pa.
+/// `sides` are those of the cell in m, `e_star` is E* in Pa, and `sliding` says how the surface slides.
 #[must_use]
-pub(crate) fn solved(summary: &Summary, sides: [f64; 2], e_star: f64) -> String {
-    headline(summary) + &aligned(&solved_lines(summary, sides, e_star))
+pub(crate) fn solved(summary: &Summary, sides: [f64; 2], e_star: f64, sliding: Option<String>) -> String {
+    headline(summary) + &aligned(&solved_lines(summary, sides, e_star, sliding))
 }
 
 /// Text of the stiffness of the contact.
@@ -21,7 +21,12 @@ pub(crate) fn stiffness(s: &Summary) -> String {
 }
 
 /// The lines of [`solved`]: names and values.
-pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'static str, String)> {
+pub(crate) fn solved_lines(
+    s: &Summary,
+    sides: [f64; 2],
+    e_star: f64,
+    sliding: Option<String>,
+) -> Vec<(&'static str, String)> {
     let [nx, ny] = s.grid;
     let pascals = |value| engineering(value, "Pa");
     let method = s.method_reason.as_ref().unwrap_or(&s.method).clone();
@@ -52,6 +57,7 @@ pub(crate) fn solved_lines(s: &Summary, sides: [f64; 2], e_star: f64) -> Vec<(&'
     ];
     if let Some(friction) = friction(s) {
         lines.insert(4, ("friction", friction));
+        lines.splice(4..4, sliding.map(|sliding| ("sliding", sliding)));
     }
     if let Some(shear) = &s.shear {
         lines.splice(4..4, shear_lines(shear));
@@ -108,10 +114,12 @@ fn shear_lines(s: &ShearSummary) -> [(&'static str, String); 3] {
 
 /// Text of the friction; `None` without a speed.
 pub(crate) fn friction(s: &Summary) -> Option<String> {
-    let FrictionSummary { friction, friction_error, lateral_friction, dissipated_power, .. } = s.friction?;
+    let FrictionSummary { friction, friction_error, lateral_friction, dissipated_power, max_loss_tangent, .. } =
+        s.friction?;
     let friction = coefficient(friction, friction_error);
     let lateral = if lateral_friction.abs() < NO_FRICTION { "0".to_owned() } else { digits(lateral_friction, 2) };
-    Some(format!("{friction}, lateral {lateral}, dissipates {}", engineering(dissipated_power, "W/m²")))
+    let (power, tangent) = (engineering(dissipated_power, "W/m²"), digits(max_loss_tangent, 3));
+    Some(format!("{friction}, lateral {lateral}, dissipates {power}, loss tangent up to {tangent}"))
 }
 
 /// Friction coefficient below which only errors of rounding are left.

@@ -1,10 +1,10 @@
 //! A map of a field, with title, bitmap, scale bar and colour bar.
 
-use plotters::element::{BitMapElement, Circle, Rectangle, Text};
+use plotters::element::{BitMapElement, Circle, PathElement, Rectangle, Text};
 use plotters::prelude::{DrawingBackend, IntoFont as _};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{BLACK, Color as _, RGBColor, TextStyle, WHITE};
-use rc_core::{Field, Grid};
+use rc_core::{DVec2, Field, Grid};
 
 use crate::{Area, FONT, Palette, PictureError, Raster};
 use rc_core::quantity::{Scale, engineering, label, round_below, ticks};
@@ -214,6 +214,27 @@ fn rasterise(map: &Map<'_>, size: (u32, u32)) -> Raster {
             Raster::of(map.field, size, |value| value, colour)
         }
     }
+}
+
+/// An arrow along `direction`, below the right end of a map of this width, in an area of this height.
+pub(crate) fn arrow<B: DrawingBackend>(
+    area: &Area<B>,
+    direction: DVec2,
+    (width, height): (u32, u32),
+    font: f64,
+) -> Result<(), PictureError> {
+    let middle = DVec2::new(f64::from(width) - 0.9 * font, f64::from(height) - 0.5 * FOOT * font);
+    // Rows of pixels go down.
+    let (along, across) = (DVec2::new(direction.x, -direction.y), DVec2::new(direction.y, direction.x));
+    let place = |[a, b]: [f64; 2]| {
+        let DVec2 { x, y } = middle + font * (a * along + b * across);
+        (x.round() as i32, y.round() as i32)
+    };
+    for line in [&[[-0.8, 0.0], [0.8, 0.0]][..], &[[0.4, -0.35], [0.8, 0.0], [0.4, 0.35]]] {
+        let points: Vec<(i32, i32)> = line.iter().copied().map(place).collect();
+        area.draw(&PathElement::new(points, BLACK.stroke_width(3))).map_err(PictureError::new)?;
+    }
+    text(area, "sliding", ((middle.x - 1.3 * font) as i32, middle.y as i32), HPos::Right, font)
 }
 
 /// A bar of round length at the lower left of the map.

@@ -2,9 +2,9 @@
 
 use plotters::prelude::DrawingBackend;
 use plotters::style::text_anchor::HPos;
-use rc_core::{Field, Grid};
+use rc_core::{DVec2, Field, Grid};
 
-use crate::map::text;
+use crate::map::{arrow, text};
 use crate::{Area, Map, Palette, Picture, PictureError, PixelMean, Shade, bitmap_size, draw_map, map_extent};
 
 /// Contact map and pressure beside each other, at the resolution of the picture.
@@ -26,6 +26,8 @@ pub struct ContactPicture {
     side: f64,
     /// Text above both maps; empty without one.
     caption: String,
+    /// Unit vector of the direction in which the surface slides.
+    direction: Option<DVec2>,
 }
 
 impl ContactPicture {
@@ -51,6 +53,12 @@ impl ContactPicture {
     #[must_use]
     pub fn captioned(self, caption: String) -> Self {
         Self { caption, ..self }
+    }
+
+    /// The same picture with an arrow in the direction in which the surface slides.
+    #[must_use]
+    pub fn sliding(self, direction: Option<DVec2>) -> Self {
+        Self { direction, ..self }
     }
 
     /// The same picture for means over blocks.
@@ -108,6 +116,7 @@ impl ContactRows {
             pressure_unit,
             side,
             caption: String::new(),
+            direction: None,
         }
     }
 }
@@ -148,6 +157,10 @@ impl Picture for ContactPicture {
         let title = format!("{name}: {} % of the {values}", rc_core::quantity::digits(100.0 * self.fraction, 3));
         let contact_map = Map { title: &title, field: &self.contact, shade: Shade::PartOfContact, side: self.side };
         draw_map(&panel(MARGIN, contact), &contact_map, TEXT)?;
+        if let Some(direction) = self.direction {
+            let (width, _) = bitmap_size(self.contact.grid(), (SIDE, SIDE));
+            arrow(&panel(MARGIN, contact), direction, (width, height), TEXT)?;
+        }
         let shade = Shade::Values {
             range: (0.0, self.greatest),
             palette: Palette::Heat,
@@ -179,8 +192,6 @@ impl Picture for MapPicture<'_> {
 
 #[cfg(test)]
 mod tests {
-    use rc_core::DVec2;
-
     use super::*;
     use crate::{save_png, save_svg};
 
@@ -199,6 +210,14 @@ mod tests {
         let text = std::fs::read_to_string(svg).expect("the SVG file");
         assert_eq!(text.matches("<image").count(), 3, "two maps and a colour bar");
         assert!(text.contains("MPa") && text.len() < 1_000_000, "{} bytes", text.len());
+        assert!(!text.contains(">\nsliding\n"), "nothing slides");
+        let sliding = dir.path().join("c.svg");
+        save_svg(&picture.clone().sliding(Some(DVec2::NEG_X)), &sliding).expect("an SVG file");
+        let arrow = std::fs::read_to_string(sliding).expect("the SVG file");
+        assert!(
+            arrow.contains("\nsliding\n")
+                && arrow.matches("<polyline").count() == text.matches("<polyline").count() + 2
+        );
         let named = picture.clone().captioned("seed 1, pressure 2 MPa".to_owned());
         assert!(named.size().1 > picture.size().1);
         save_svg(&named, &dir.path().join("b.svg")).expect("an SVG file");

@@ -3,6 +3,7 @@
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use rc_cli::scene::resolve;
+use rc_cli::sweep::crept;
 use rc_core::{EdgeBias, Field, Grid, PeriodicCell};
 use rc_solver::{ContactSpot, StressDistribution};
 use rc_sweep::{LeakageSummary, Summary, to_json};
@@ -102,13 +103,18 @@ pub(crate) fn run(py: Python<'_>, words: Vec<String>) -> PyResult<()> {
 
 /// The cells of a row of a sweep from a summary, both as JSON.
 ///
-/// The columns are those that the scene asks for.
+/// The columns are those that the scene asks for. With `creep`, the ratio of its load to that under which a solid creeps, they
+/// are those of this solid.
 #[pyfunction]
-pub(crate) fn cells(summary: &str, scene: &str) -> PyResult<String> {
+#[pyo3(signature = (summary, scene, creep=None))]
+pub(crate) fn cells(summary: &str, scene: &str, creep: Option<f64>) -> PyResult<String> {
     let scene = rc_cli::scene::file::parse(scene).map_err(|cause| bad_input(format!("scene.toml: {cause}")))?;
     let summary: Summary =
         serde_json::from_str(summary).map_err(|cause| bad_input(format!("summary.json: {cause}")))?;
     let mut cells = summary.cells();
+    if let Some(creep) = creep {
+        crept(&mut cells, creep);
+    }
     if scene.contact.leakage {
         LeakageSummary::complete(&mut cells, scene.contact.viscosity.is_some());
     }

@@ -44,6 +44,9 @@ pub(crate) struct Given<'py> {
     /// Whether this is a row of a sweep. The memory of the machine then does not decide anything.
     #[pyo3(item)]
     is_row: bool,
+    /// Ratio of the load of this row to that under which a solid creeps.
+    #[pyo3(item)]
+    creep: Option<f64>,
 }
 
 /// A problem that is ready to be solved without Python.
@@ -102,7 +105,10 @@ fn end(keys: &RunKeys, started: Instant) -> Option<Instant> {
 impl Prepared {
     fn new(scene: Scene, given: &Given<'_>) -> PyResult<Self> {
         let started = Instant::now();
-        let Scene { surface, contact, run } = scene;
+        let Scene { surface, mut contact, run } = scene;
+        if given.creep.is_some() {
+            contact = contact.elastic();
+        }
         let map = given.heights.as_ref().map(|heights| arrays::map_of(heights, given.sides)).transpose()?;
         let mut scene = match &map {
             Some(map) => {
@@ -113,6 +119,7 @@ impl Prepared {
         }
         .map_err(raised)?;
         scene.contact.params.method_follows_memory &= !given.is_row;
+        scene.contact.creep = given.creep;
         let kernel = given.kernel.as_ref().map(|symbol| own_kernel(symbol, &scene, map.as_ref())).transpose()?;
         Ok(Self { scene, kernel, map, budget: Budget::new(run.memory_limit), is_strict: run.strict, started })
     }

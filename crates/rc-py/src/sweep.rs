@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rc_cli::sweep::{MapMark, SweepLists, Variation, plan};
+use rc_cli::sweep::{self, MapMark, PlannedRows, SweepLists, Variation, plan};
 use rc_sweep::{Cells, ControlKind, FileMark, Loads, Seeds, Shard, SweepPlan};
 
 use crate::arrays::{self, Heights};
@@ -28,6 +28,12 @@ pub(crate) struct Wanted<'py> {
     /// Keys that are varied.
     #[pyo3(item)]
     vary: Vec<(String, Values<'py>)>,
+    /// A list of speeds, as on the command line.
+    #[pyo3(item)]
+    speeds: Option<String>,
+    /// A list of times of creep, as on the command line.
+    #[pyo3(item)]
+    times: Option<String>,
     /// Heights (m), row by row.
     #[pyo3(item)]
     heights: Option<Heights<'py>>,
@@ -71,6 +77,8 @@ fn variation(key: &str, values: &Values<'_>) -> PyResult<Variation> {
 #[pyclass(frozen, module = "roughcontact._core")]
 pub(crate) struct Planned {
     plan: SweepPlan,
+    /// For each surface of the plan, the ratio of its loads to that under which a solid creeps.
+    creep: Vec<Option<f64>>,
     /// The journal until the sweep ends. While it exists, no other process may write to its folder.
     journal: Mutex<Option<rc_sweep::Sweep>>,
 }
@@ -78,21 +86,29 @@ pub(crate) struct Planned {
 /// Checks a sweep, and starts or continues its journal.
 #[pyfunction]
 pub(crate) fn plan_sweep(py: Python<'_>, keys: &Bound<'_, PyDict>, wanted: Wanted<'_>) -> PyResult<Planned> {
-    let Wanted { penetrations, loads, seeds, vary, heights, sides, scene: file, folder, resume, fields } = wanted;
+    let Wanted { penetrations, loads, seeds, vary, speeds, times, heights, sides, .. } = wanted;
+    let Wanted { scene: file, folder, resume, fields, .. } = wanted;
     let scene = scene::with_map(keys, file.as_deref(), heights.is_some())?;
     let control = if penetrations { ControlKind::Penetration } else { ControlKind::Pressure };
-    let vary = vary.iter().map(|(key, values)| variation(key, values)).collect::<PyResult<_>>()?;
-    let lists = SweepLists { control, loads: Loads(loads), seeds: seeds.map(Seeds), vary };
+    let mut vary = vary.iter().map(|(key, values)| variation(key, values)).collect::<PyResult<Vec<_>>>()?;
+    vary.extend(speeds.map(|list| Variation::speeds(&list)).transpose().map_err(|cause| refused("speeds", cause))?);
+    let times = times.map(|list| sweep::times(&list)).transpose().map_err(|cause| refused("times", cause))?;
+    let lists = SweepLists { control, loads: Loads(loads), seeds: seeds.map(Seeds), vary, times, fields };
     let map = heights.as_ref().map(|heights| mark(py, heights, folder.is_some())).transpose()?;
     let points = heights.as_ref().map(arrays::grid_of).transpose()?.map(|grid| [grid.nx(), grid.ny()]);
     let map = map.zip(points).map(|(mark, points)| MapMark { sides, points, mark });
     let name = file.as_deref().and_then(Path::file_stem).unwrap_or_default().to_string_lossy().into_owned();
-    let plan = on_threads(py, 0, move || plan(&name, &scene, &lists, map))?.map_err(raised)?;
+    let planned = on_threads(py, 0, move || plan(&name, &scene, &lists, map))?.map_err(raised)?;
+    let PlannedRows { plan, creep } = planned;
     let plan = SweepPlan { keeps_fields: fields, ..plan };
     // A signal must not leave this running, since a journal would then appear later.
     let start = |folder: PathBuf| py.detach(|| rc_sweep::Sweep::start(plan.clone(), Shard::WHOLE, &folder, resume));
     let journal = folder.map(start).transpose().map_err(|error| raised(error.into()))?;
-    Ok(Planned { plan, journal: Mutex::new(journal) })
+    Ok(Planned { plan, creep, journal: Mutex::new(journal) })
+}
+
+fn refused(list: &str, cause: impl std::fmt::Display) -> PyErr {
+    bad_input(format_args!("{list}: {cause}"))
 }
 
 /// The mark that identifies a map. Without a journal it is not needed, and marks no values.
@@ -123,6 +139,11 @@ impl Planned {
             (surface.seed, row.load, serde_json::Value::Object(varied).to_string())
         };
         (0..self.n_rows()).map(row).collect()
+    }
+
+    /// The ratio of the load of a row to that under which a solid creeps; `None` without times.
+    fn creep(&self, index: usize) -> Option<f64> {
+        self.creep[self.plan.row(index).surface]
     }
 
     /// Description of a row for messages.

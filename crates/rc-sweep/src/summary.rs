@@ -119,6 +119,9 @@ pub struct Summary {
     /// Shear of the contact. Its keys exist only with a friction that is given.
     #[serde(flatten)]
     pub shear: Option<ShearSummary>,
+    /// The smallest dp/dσ0 in contact, of a solid that creeps. At most 0 where it would have to pull.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub least_pressure_rise: Option<f64>,
     /// Elastic energy of the cell (J).
     pub elastic_energy: f64,
     /// rms height about the mean (m).
@@ -285,6 +288,7 @@ impl Summary {
             conductance_error: context.conductivity.map(|of_bodies| of_spots[1].map(|error| error * of_bodies)),
             friction: context.slides.then(|| FrictionSummary::of(solution, units)),
             shear: None,
+            least_pressure_rise: None,
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),
             rms_slope: context.rms_slope,

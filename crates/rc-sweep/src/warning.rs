@@ -48,6 +48,8 @@ pub enum WarningCode {
     Coarse,
     /// Heights jump at the edges of contacts.
     Edges,
+    /// A solid that creeps would have to pull.
+    Creep,
 }
 
 impl Warning {
@@ -60,7 +62,7 @@ impl Warning {
 
 impl WarningCode {
     /// All codes.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Units,
         Self::Slope,
         Self::Load,
@@ -75,6 +77,7 @@ impl WarningCode {
         Self::Tilt,
         Self::Coarse,
         Self::Edges,
+        Self::Creep,
     ];
 
     /// What the code means, in a few words.
@@ -95,6 +98,7 @@ impl WarningCode {
             Self::Tilt => "a twin has the tilt of its map",
             Self::Coarse => "the grid is too coarse",
             Self::Edges => "heights jump at contact edges",
+            Self::Creep => "pressure falls somewhere while the contact grows",
         }
     }
 
@@ -116,6 +120,7 @@ impl WarningCode {
             Self::Tilt => "tilt",
             Self::Coarse => "coarse",
             Self::Edges => "edges",
+            Self::Creep => "creep",
         }
     }
 }

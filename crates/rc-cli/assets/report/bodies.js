@@ -78,5 +78,5 @@ function bodySections(surface, fields, view, sides) {
 /** Both bodies of the contact of a profile. */
 function bodyOfLine(section, side) {
   const note = "Heights are from the undeformed elastic surface, and enlarged against x. At most 1000 points are shown, where the gap is smallest.";
-  return make("section", {}, make("h2", {}, "Both bodies"), make("div", { class: "columns wide" }, new Chart(bodyChart(section, side)).element), make("p", { class: "quiet" }, note));
+  return make("section", {}, make("h2", {}, "Both bodies"), make("div", { class: "columns wide" }, new Chart(bodyChart(section, side)).element, make("div", {})), make("p", { class: "quiet" }, note));
 }

@@ -129,7 +129,8 @@ class FrameMaps {
 
 /** The maps with a slider over the loads, and a choice of the surface. */
 function sweepFrames({ greatest, surfaces }, against) {
-  const slider = document.createRange().createContextualFragment('<input type="range" min="0" value="0" step="1" aria-label="load">').firstChild;
+  const slider = document.createRange().createContextualFragment('<input type="range" min="0" value="0" step="1">').firstChild;
+  slider.setAttribute("aria-label", against);
   const label = make("output", { class: "load" });
   const place = make("div");
   const choice = make("select", { "aria-label": "surface" }, ...surfaces.map(({ name }, i) => make("option", { value: i }, name)));

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use plotters::prelude::DrawingBackend;
 use plotters::style::RGBColor;
-use rc_core::quantity::engineering;
 use rc_plot::{
     Area, CURVES, ContactPicture, LinePlot, LineStyle, LogAxes, Picture, PictureError, Series, draw_lines_on, save_png,
     save_svg,
@@ -53,13 +52,14 @@ fn contact(fields: &Path, row: &Row, greatest: f64) -> Result<ContactPicture, Cl
     let result = ResultFolder::read_finite(fields)?;
     let greatest = greatest.max(row.number("max_pressure").unwrap_or_default());
     let caption = [row.surface(), load(row)].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
-    let picture = ContactPicture::of(&result.pressure, 1.0, result.side).up_to(greatest).captioned(caption);
+    let picture = ContactPicture::of(&result.pressure, 1.0, result.side).up_to(greatest);
+    let picture = picture.captioned(caption).sliding(result.direction);
     Ok(if result.is_of_elements() { picture } else { picture.of_blocks() })
 }
 
 /// The prescribed load in words.
 fn load(row: &Row) -> String {
-    format!("{} {}", row.control, engineering(row.load, if row.control == "penetration" { "m" } else { "Pa" }))
+    format!("{} {}", row.control, row.load_in_words())
 }
 
 /// A point of a curve with the errors of both coordinates, in SI units.

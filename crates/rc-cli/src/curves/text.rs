@@ -104,7 +104,9 @@ fn scene(rows: &[Row]) -> String {
 /// A mean with its standard error, such as `15.10 ± 0.20 µm`.
 pub(crate) fn cell(quantity: &Quantity, mean: Mean) -> String {
     let unit = quantity.unit;
-    mean.standard_error.map_or_else(|| words(mean.value, unit), |error| words_with_error(mean.value, error, unit))
+    // What is given is the same for all seeds.
+    let error = mean.standard_error.filter(|error| *error > 1e-12 * mean.value.abs());
+    error.map_or_else(|| words(mean.value, unit), |error| words_with_error(mean.value, error, unit))
 }
 
 /// Lines of cells in columns as wide as their longest cell.

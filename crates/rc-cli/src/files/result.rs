@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use rc_core::{Field, Grid, PeriodicCell};
+use rc_core::{DVec2, Field, Grid, PeriodicCell};
 
 use crate::error::CliError;
 use crate::files::names::{PLASTIC_GAP_FILE, SHEAR_FILES, SUMMARY_FILE};
 use crate::scene::file;
 use crate::scene::heights::check_finite;
 use crate::scene::resolve;
+use crate::scene::resolve::sliding::SlidingSolid;
 use rc_heights::npy;
 use rc_sweep::Summary;
 
@@ -21,6 +22,8 @@ pub struct ResultFolder {
     pub side: f64,
     /// E* (Pa), from the solved scene.
     pub e_star: f64,
+    /// Unit vector of the direction in which the surface slides.
+    pub direction: Option<DVec2>,
     /// Pressure (Pa).
     pub pressure: Field,
     /// Gap (m).
@@ -68,7 +71,9 @@ impl ResultFolder {
         let side =
             side.ok_or_else(|| CliError::in_file(&scene_path, "cell: must be given, positive and finite (m)"))?;
         let cell = PeriodicCell::new(side).map_err(|cause| CliError::in_file(&scene_path, cause))?;
-        let e_star = resolve::contact(scene.contact, cell)?.units.elasticity().e_star();
+        let contact = resolve::contact(scene.contact, cell)?;
+        let e_star = contact.units.elasticity().e_star();
+        let direction = contact.sliding.as_ref().and_then(SlidingSolid::heading);
         let field = |name: &str| in_cell(&folder.join(name), scene.surface.cell_y.map_or(1.0, |side_y| side_y / side));
         let (pressure, gap) = (field("pressure.npy")?, field("gap.npy")?);
         let optional = |name: &str| folder.join(name).is_file().then(|| field(name)).transpose();
@@ -85,7 +90,7 @@ impl ResultFolder {
                 return Err(CliError::in_file(&folder.join(name), message));
             }
         }
-        Ok(Self { summary, side, e_star, pressure, gap, plastic_gap, slip })
+        Ok(Self { summary, side, e_star, direction, pressure, gap, plastic_gap, slip })
     }
 
     /// Sides of the cell along x and y (m).

@@ -33,6 +33,7 @@ use crate::scene::heights::CellOfMap;
 use crate::scene::keys::{RunKeys, Scene, SurfaceKeys};
 use crate::scene::loaded::LoadedSurface;
 use crate::scene::profile::Profile;
+use crate::scene::resolve::sliding;
 use crate::scene::values::GridSpec;
 use crate::scene::{file, heights, origin, resolve};
 use crate::text::{solved, written};
@@ -176,7 +177,11 @@ fn inspect_result(folder: &Path, json: bool) -> Result<(String, Vec<Warning>), C
     let text = if json {
         to_json(&ResultStatistics { summary: result.summary, pressure, warnings: warnings.clone() })
     } else {
-        solved(&result.summary, sides, result.e_star) + "\nstored pressure\n" + &text::pressure(&pressure, elements)
+        let scene = file::read(&folder.join(SCENE_FILE))?;
+        let sliding = sliding::in_words(&scene.contact);
+        solved(&result.summary, sides, result.e_star, sliding)
+            + "\nstored pressure\n"
+            + &text::pressure(&pressure, elements)
     };
     Ok((text, warnings))
 }

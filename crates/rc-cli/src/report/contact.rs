@@ -100,7 +100,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
     let bias = kernel.map_or_else(EdgeBias::default, |kernel| kernel.edge_bias(result.pressure.grid()));
     let summary = &result.summary;
     let sliding = sliding::in_words(&scene.contact);
-    let slides = scene.contact.speed.is_some_and(|speed| speed > 0.0);
+    let direction = result.direction.map(|direction| direction.to_array());
     let load = match summary.control.as_str() {
         "penetration" => format!("at a penetration of {}", engineering(summary.penetration, "m")),
         "force" => {
@@ -129,30 +129,20 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
         kind: "result",
         body: Contact {
             maps: Maps { slip: slip_map(&result, &scene), ..maps(&result) },
-            kappa: surface.as_ref().filter(|_| !scene.surface.has_shape() && !slides).and_then(|surface| {
+            kappa: surface.as_ref().filter(|_| !scene.surface.has_shape() && direction.is_none()).and_then(|surface| {
                 kappa(summary, result.e_star, surface.nayak().filter(|_| scene.contact.layer_thickness.is_none()))
             }),
             surface,
             no_surface,
             stress: stress(&result),
             certificate: Certificate::of(summary),
-            lines: lines(summary, &result, sliding),
-            direction: slides.then(|| sliding::direction(&scene.contact).to_array()),
+            lines: text::solved_lines(summary, result.sides(), result.e_star, sliding),
+            direction,
             leakage: FlowPicture::of(folder, summary),
             // This comes last, since it takes the fields.
             spots: SpotSizes::of_result(result, bias, scene.contact.boundary.unwrap_or_default()),
         },
     })
-}
-
-/// The lines that `rc solve` prints, with how the surface slides.
-fn lines(summary: &Summary, result: &ResultFolder, sliding: Option<String>) -> Vec<(&'static str, String)> {
-    let mut lines = text::solved_lines(summary, result.sides(), result.e_star);
-    let place = lines.iter().position(|(name, _)| *name == "friction").unwrap_or(0);
-    if let Some(sliding) = sliding {
-        lines.insert(place, ("sliding", sliding));
-    }
-    lines
 }
 
 fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
@@ -169,7 +159,15 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
     let s = &result.summary;
     let place = match (scene.contact.boundary, scene.contact.layer_thickness) {
         (Some(Boundary::Free), _) => "on a free patch of".to_owned(),
-        (_, Some(thickness)) => format!("on a layer of {}, in a cell of", engineering(thickness, "m")),
+        (_, Some(thickness)) => {
+            let of = engineering(thickness, "m");
+            match scene.contact.substrate_young {
+                Some(young) => {
+                    format!("on a coating of {of} (substrate E = {}), in a cell of", engineering(young, "Pa"))
+                }
+                None => format!("on a layer of {of}, in a cell of"),
+            }
+        }
         _ if result.is_line() => "periodic with".to_owned(),
         _ => "in a cell of".to_owned(),
     };
@@ -392,7 +390,16 @@ pub(super) mod tests {
             let gap = Field::zeros(grid);
             // With this slope the variance of full contact is spread².
             let summary = summary(grid, mean_pressure, 2.0 * spread, None);
-            let result = ResultFolder { summary, side: 1.0, e_star: 1.0, pressure, gap, plastic_gap: None, slip: None };
+            let result = ResultFolder {
+                summary,
+                side: 1.0,
+                e_star: 1.0,
+                direction: None,
+                pressure,
+                gap,
+                plastic_gap: None,
+                slip: None,
+            };
             let stress = stress(&result).expect("contact");
             let note = &stress.notes[1];
             let (_, part) = note.split_once("E*², ").expect("the part of the theory");
@@ -411,7 +418,16 @@ pub(super) mod tests {
         let result = |n| {
             let summary = summary(Grid::square(n).expect("a grid"), 1.0, 0.1, None);
             let (pressure, gap) = (pressure.clone(), gap.clone());
-            ResultFolder { summary, side: 1.0, e_star: 1.0, pressure, gap, plastic_gap: None, slip: None }
+            ResultFolder {
+                summary,
+                side: 1.0,
+                e_star: 1.0,
+                direction: None,
+                pressure,
+                gap,
+                plastic_gap: None,
+                slip: None,
+            }
         };
         let numbers = |result: &ResultFolder| serde_json::to_value(&maps(result).gap).expect("JSON")["data"].clone();
         let encoded = |numbers: [u16; 4]| {

@@ -196,7 +196,8 @@ fn body(folder: &Path, table: &SweepTable) -> Result<Curves, CliError> {
     let against = (table.against != PRESSURE).then_some(table.against);
     heads.push("seed");
     heads.extend(against.map(|quantity| quantity.words));
-    heads.extend(["mean pressure", "penetration", "contact area (%)", "mean gap", "stiffness"]);
+    heads.extend(["mean pressure", "penetration", "contact area (%)", "mean gap"]);
+    heads.extend(has_stiffness(&table.rows).then_some("stiffness"));
     heads.extend(MORE.into_iter().filter(|column| column.is_in(&table.rows)).map(|column| column.head));
     heads.push("status");
     let persson = persson(table);
@@ -259,7 +260,10 @@ fn means(table: &SweepTable, name: &'static str) -> Option<Table> {
         return None;
     }
     let has = |quantity: &Quantity| all.iter().any(|at| at.mean(*quantity).is_some());
-    let shown: Vec<Quantity> = [PRESSURE].into_iter().chain(SWEPT).chain(QUANTITIES).filter(has).collect();
+    let mut quantities = QUANTITIES;
+    // A friction is what its sweep is made for, so it is not the last of a wide table.
+    quantities.sort_by_key(|quantity| quantity.name != "friction");
+    let shown: Vec<Quantity> = [PRESSURE].into_iter().chain(SWEPT).chain(quantities).filter(has).collect();
     let mut heads = if several { vec![name] } else { Vec::new() };
     heads.push("surfaces");
     heads.extend(shown.iter().map(|quantity| quantity.words));
@@ -271,6 +275,11 @@ fn means(table: &SweepTable, name: &'static str) -> Option<Table> {
         label.into_iter().chain([at.rows.len().to_string()]).chain(values).collect()
     };
     Some(Table { heads, rows: all.iter().map(row).collect() })
+}
+
+/// Whether rows have a stiffness. A solid that creeps has none.
+fn has_stiffness(rows: &[Row]) -> bool {
+    rows.iter().any(|row| row.cells.contains_key("contact_stiffness"))
 }
 
 /// The cells of a row.
@@ -285,12 +294,10 @@ fn cells(row: &Row, several: bool, all: &[Row]) -> Vec<String> {
         of("penetration", "m"),
         text::with_error(area, error),
         of("mean_gap", "m"),
-        match row.number("contact_stiffness") {
-            Some(value) => engineering(value, "Pa/m"),
-            None if row.cells.contains_key("contact_stiffness") => "infinite".to_owned(),
-            None => "–".to_owned(),
-        },
     ]);
+    let stiffness =
+        || row.number("contact_stiffness").map_or_else(|| "infinite".to_owned(), |k| engineering(k, "Pa/m"));
+    cells.extend(has_stiffness(all).then(stiffness));
     cells.extend(MORE.iter().filter(|column| column.is_in(all)).map(|column| column.cell(row)));
     cells.push(row.status.replace('_', " "));
     cells
@@ -302,8 +309,9 @@ struct Column {
     key: &'static str,
 }
 
-const MORE: [Column; 6] = [
+const MORE: [Column; 7] = [
     Column { head: "friction", key: "friction" },
+    Column { head: "least dp/dσ0", key: "least_pressure_rise" },
     Column { head: "conductance (W/(m² K) or S/m²)", key: "conductance" },
     Column { head: "permeance along x (m³)", key: "permeance_x" },
     Column { head: "permeance along y (m³)", key: "permeance_y" },

@@ -8,6 +8,7 @@ use rc_plot::{Palette, PixelMean};
 use serde::Serialize;
 
 use super::embedded::{Bits, EmbeddedField};
+use crate::curves::columns::PRESSURE;
 use crate::curves::table::{Row, SweepTable};
 use crate::error::CliError;
 use crate::files::result::ResultFolder;
@@ -65,7 +66,11 @@ impl Frames {
         let surfaces: Vec<Vec<(&Row, &Path)>> = table.surfaces().into_iter().map(with_fields).collect();
         let n: usize = surfaces.iter().map(Vec::len).sum();
         if n == 0 {
-            let hint = "No contact maps: the rows have no fields. Repeat the sweep with --fields to see them here.";
+            let hint = if table.against.name == "time" {
+                "No contact maps: the pressure after a time is not that of an elastic contact."
+            } else {
+                "No contact maps: the rows have no fields. Repeat the sweep with --fields to see them here."
+            };
             return Ok((None, hint.to_owned()));
         }
         let (pixels, every) = size(n);
@@ -77,7 +82,8 @@ impl Frames {
         }
         let all = || maps.iter().flatten().map(|(_, means)| means);
         let greatest = all().map(|means| means.pressure.max()).fold(0.0, f64::max);
-        let note = note(all().all(|means| means.of_elements), (pixels, every), n);
+        let what = if table.against == PRESSURE { "load" } else { table.against.name };
+        let note = note(all().all(|means| means.of_elements), (pixels, every), (n, what));
         let surfaces = maps.iter().filter_map(|rows| SurfaceFrames::of(rows, greatest)).collect();
         Ok((Some(Self { greatest, surfaces }), note))
     }
@@ -101,17 +107,17 @@ fn with_fields(rows: &[Row]) -> Vec<(&Row, &Path)> {
     rows.iter().filter_map(|row| Some((row, row.place.as_ref()?.fields.as_deref()?))).collect()
 }
 
-fn note(of_elements: bool, (pixels, every): (usize, usize), n: usize) -> String {
+fn note(of_elements: bool, (pixels, every): (usize, usize), (n, what): (usize, &str)) -> String {
     let part =
         if of_elements { "" } else { " The fields are means over blocks (output_grid), and touched blocks are dark." };
     let loads = if every > 1 {
-        format!(" Of {}, every {every}th load is shown, and the last.", count(n, "map"))
+        format!(" Of {}, every {every}th {what} is shown, and the last.", count(n, "map"))
     } else {
         String::new()
     };
     format!(
         "All frames have the same scale of pressures and colours. A map has at most {pixels} x {pixels} pixels, each a mean over \
-         its elements.{loads}{part} Scroll to zoom, drag to move; arrow keys on the slider change the load."
+         its elements.{loads}{part} Scroll to zoom, drag to move; arrow keys on the slider change the {what}."
     )
 }
 

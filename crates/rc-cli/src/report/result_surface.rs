@@ -185,6 +185,7 @@ mod tests {
             summary: summary(grid, 1.0, 0.1, None),
             side: 2.0,
             e_star: 1.0,
+            direction: None,
             pressure: field(|touches| if touches { 4.0 } else { 0.0 }),
             gap: field(|touches| if touches { 1e-12 } else { 0.5 }),
             plastic_gap: None,

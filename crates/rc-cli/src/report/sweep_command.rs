@@ -13,6 +13,9 @@ const FILES: [(&str, &str); 4] = [
     ("like", ""),
 ];
 
+/// Varied keys with which loads follow from the contact: a force, and the constant load of a solid that creeps.
+const LOADS: [&str; 2] = ["force", "time"];
+
 /// Keys of a surface or a contact.
 type Keys = Map<String, Value>;
 
@@ -66,14 +69,9 @@ impl<'a> Part<'a> {
     fn of(scene: &'a [Value]) -> Option<Self> {
         let mut varied: Vec<_> = varied_of(&scene[0]).into_iter().map(|(key, _)| (key, Vec::new())).collect();
         let names: Vec<&str> = varied.iter().map(|(key, _)| *key).collect();
-        // Each time has a load, and its material is not among the keys.
-        if names.contains(&"time") {
-            return None;
-        }
         let keys = keys_without(&scene[0], &names);
         for surface in scene {
-            // A force is a load.
-            let has_loads = names.contains(&"force") || surface["loads"] == scene[0]["loads"];
+            let has_loads = names.iter().any(|name| LOADS.contains(name)) || surface["loads"] == scene[0]["loads"];
             if !has_loads || keys_without(surface, &names) != keys {
                 return None;
             }
@@ -104,11 +102,14 @@ impl<'a> Part<'a> {
         let [surface, contact] = &self.keys;
         let list = |values: &mut dyn Iterator<Item = &Value>| values.map(text_of).collect::<Vec<_>>().join(",");
         let vary = self.varied.iter().map(|(key, values)| {
+            if *key == "time" {
+                return format!(" --times {}", list(&mut values.iter().copied()));
+            }
             let key = key.replace('_', "-");
             format!(" --vary {}", quoted(&format!("{key}={}", list(&mut values.iter().copied()))))
         });
         let control = settings["control"].as_str().unwrap_or("pressure");
-        let loads = if self.varied.iter().any(|(key, _)| *key == "force") {
+        let loads = if self.varied.iter().any(|(key, _)| LOADS.contains(key)) {
             String::new()
         } else {
             format!(" --{control}s {}", list(&mut self.loads.as_array().into_iter().flatten()))

@@ -44,7 +44,7 @@ impl PronyFile {
         let first = rows.first().copied().unwrap_or_default();
         let title = lines.filter(|(number, line)| *number < first && !line.is_empty()).last();
         let titles = title.map_or(Ok(Titles::default()), |(number, line)| {
-            Titles::of(line.trim_start_matches('#').trim()).map_err(|cause| format!("line {number}: {cause}"))
+            Titles::of(line).map_err(|cause| format!("line {number}: {cause}"))
         })?;
         let mut terms = Vec::with_capacity(pairs.len());
         for (&[modulus, time], line) in pairs.iter().zip(rows) {
@@ -74,15 +74,25 @@ impl Default for Titles {
     }
 }
 
+/// Beginnings of titles of moduli. A shear modulus G is not relative to Young's modulus.
+const MODULI: [&str; 6] = ["g", "E", "e", "modul", "Modul", "relative"];
+
 impl Titles {
-    /// Reads titles such as `E (MPa), tau (ms)`. Comments in words have no units.
+    /// Reads titles such as `E (MPa), tau (ms)`, which may be `commented`. Comments in words have no units.
     fn of(line: &str) -> Result<Self, String> {
+        let (line, commented) = (line.trim_start_matches('#').trim(), line.starts_with('#'));
         let mut titles = Self::default();
         let name: String = line.chars().take_while(|c| !c.is_whitespace() && !",;([".contains(*c)).collect();
         if ["tau", "τ", "t", "time"].iter().any(|time| {
             name.trim_end_matches(|c: char| c == '_' || c.is_ascii_digit() || c == 'i').eq_ignore_ascii_case(time)
         }) {
             return Err(format!("the first column is '{name}'; the modulus comes first, then the relaxation time"));
+        }
+        let is_words = commented || name.is_empty();
+        if !is_words && !MODULI.iter().any(|known| name.starts_with(known)) {
+            return Err(format!(
+                "the first column is '{name}'; it must be g, relative to the relaxed modulus, or E (Pa, Young's modulus)"
+            ));
         }
         let index = name.strip_prefix('E').map(|index| index.trim_start_matches('_'));
         if index.is_some_and(|index| index.chars().all(|c| c.is_ascii_digit() || "ink".contains(c))) {
@@ -115,6 +125,17 @@ mod tests {
         for title in ["tau (s), g", "tau_i, E (MPa)", "t g", "# time; modulus"] {
             let refused = PronyFile::of(&[[1e-3, 3.0]], &format!("{title}\n1e-3 3\n"));
             assert!(refused.expect_err(title).contains("the modulus comes first"), "{title}");
+        }
+    }
+
+    #[test]
+    fn a_column_that_is_no_modulus_is_refused() {
+        for title in ["foo bar", "G (MPa), tau (s)", "storage, loss"] {
+            let refused = PronyFile::of(&[[3.0, 1e-3]], &format!("{title}\n3 1e-3\n"));
+            assert!(
+                refused.expect_err(title).contains("it must be g, relative to the relaxed modulus, or E"),
+                "{title}"
+            );
         }
     }
 

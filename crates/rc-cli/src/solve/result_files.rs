@@ -23,6 +23,7 @@ use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
 use crate::scene::resolve::ContactSetup;
+use crate::scene::resolve::sliding::SlidingSolid;
 use crate::scene::values::{Conductivity, GridSpec};
 use crate::scene::wave_file::WaveFile;
 use crate::warnings::result::after;
@@ -96,7 +97,19 @@ impl ResultFiles<'_> {
         let is_open = self.shear.is_some_and(|shear| !shear.has_converged);
         let status = if is_open { Status::NotConverged.name().to_owned() } else { summary.status };
         let shear = self.shear.map(|shear| shear.summary(self.contact));
-        Summary { status, control, force, leakage, shear, warnings, source, second_body, ..summary }
+        let least_pressure_rise = self.contact.creep.and_then(|_| self.solution.least_pressure_rise());
+        Summary {
+            status,
+            control,
+            force,
+            least_pressure_rise,
+            leakage,
+            shear,
+            warnings,
+            source,
+            second_body,
+            ..summary
+        }
     }
 
     /// The warnings from before the solve, and those that only the solution shows.
@@ -237,7 +250,8 @@ fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'
         picture.take(rows);
         Ok::<_, Infallible>(())
     });
-    let picture = picture.finish(e_star, side);
+    let direction = contact.sliding.as_ref().and_then(SlidingSolid::heading);
+    let picture = picture.finish(e_star, side).sliding(direction);
     staged.add("contact.png", |path| save_png(&picture, path))
 }
 

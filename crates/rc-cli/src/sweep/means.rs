@@ -4,6 +4,7 @@ use rc_core::quantity::{digits, engineering};
 use rc_sweep::{Cells, SweepRows};
 use serde_json::Value;
 
+use crate::curves::columns::unit_of;
 use crate::curves::means::Mean;
 use crate::text;
 
@@ -40,8 +41,11 @@ fn problem(cells: &Cells) -> String {
     let text = |value: &Value| number(value).or(value.as_str().map(str::to_owned)).unwrap_or_else(|| value.to_string());
     let keys = cells.iter().take_while(|(key, _)| *key != "status").filter(|(key, _)| *key != "seed");
     let unit = if control == "penetration" { "m" } else { "Pa" };
+    // The solid creeps under its mean pressure; the load in the first column is that of an elastic one.
+    let constant = cells.get("mean_pressure").and_then(Value::as_f64).filter(|_| cells.contains_key("time"));
     let keys = keys.map(|(key, value)| match value.as_f64() {
-        Some(load) if key == "control_value" => format!("{control} {}", engineering(load, unit)),
+        Some(load) if key == "control_value" => format!("{control} {}", engineering(constant.unwrap_or(load), unit)),
+        Some(value) if !unit_of(key).is_empty() => format!("{key} {}", engineering(value, unit_of(key))),
         _ => format!("{key} {}", text(value)),
     });
     keys.collect::<Vec<_>>().join(", ")

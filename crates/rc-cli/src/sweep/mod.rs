@@ -23,9 +23,10 @@ mod specs;
 mod surfaces;
 mod varied;
 
+pub use creep::{crept, times};
 pub use map_mark::MapMark;
 pub(crate) use mean::MEAN_FILE;
-pub use planned::{SweepLists, plan};
+pub use planned::{PlannedRows, SweepLists, plan};
 pub use varied::Variation;
 
 use std::path::Path;

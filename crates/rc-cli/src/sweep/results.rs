@@ -6,9 +6,8 @@ use std::time::Instant;
 use rc_core::Observer;
 use rc_sweep::{Cells, LeakageSummary, RowError, SolvedRow, replace_fields};
 
-use serde_json::Value;
-
 use super::bar::RowBar;
+use super::creep::crept;
 use super::doubts::Doubts;
 use super::problems::SceneContact;
 use crate::error::CliError;
@@ -68,26 +67,6 @@ impl<'a> Results<'a> {
 
     pub(super) fn should_stop(&self) -> bool {
         self.limit.reason().is_some() || self.stop.is_some_and(Observer::should_stop)
-    }
-}
-
-/// Columns of an elastic contact that a solid which has crept does not have: its pressure has another history.
-const NOT_CREPT: [&str; 6] = [
-    "rms_pressure",
-    "rms_pressure_corrected",
-    "rms_pressure_error",
-    "max_pressure",
-    "contact_stiffness",
-    "elastic_energy",
-];
-
-/// Makes the cells of an elastic contact those of a solid that has crept. The ratio of their loads is `creep`.
-fn crept(cells: &mut Cells, creep: f64) {
-    for key in NOT_CREPT {
-        cells.shift_remove(key);
-    }
-    if let Some(pressure) = cells.get("mean_pressure").and_then(Value::as_f64) {
-        cells.insert("mean_pressure".to_owned(), (pressure / creep).into());
     }
 }
 

@@ -9,7 +9,7 @@ use rc_sweep::{ControlKind, FileMark, Loads, MAX_ROWS, PlannedSurface, Seeds, Sw
 use serde_json::json;
 
 use super::args::SweepArgs;
-use super::creep;
+use super::creep::{self, Creep, Crept};
 use super::map_mark::MapMark;
 use super::varied::{Variation, Varied};
 use crate::error::CliError;
@@ -35,8 +35,8 @@ pub(super) struct SweptSurface {
     /// Resolved keys without a load.
     contact: ContactKeys,
     loads: Vec<f64>,
-    /// Ratio of the loads to the load under which a solid creeps, at a time.
-    creep: Option<f64>,
+    /// The solid that has crept, whose loads these are.
+    creep: Option<Crept>,
     /// Mark that identifies a height map which a program holds.
     held: Option<FileMark>,
 }
@@ -73,12 +73,14 @@ impl Surfaces {
         let n_scenes = scenes.len();
         let scenes = varied(args, scenes)?;
         let control = control(args, &scenes)?;
-        let scenes = creep::after_times(args, control, scenes)?;
+        let given = args.pressures.as_ref().map_or(&[][..], |Loads(pressures)| pressures);
+        let times = Creep { times: args.times.as_ref(), control, loads: given, fields: args.fields };
+        let scenes = creep::after_times(times, scenes)?;
         let mut surfaces = Vec::new();
         for (name, values, scene, creep) in &scenes {
             let mut loads = loads(args, control, &scene.contact)?;
             for load in &mut loads {
-                *load *= creep.unwrap_or(1.0);
+                *load *= creep.as_ref().map_or(1.0, |crept| crept.ratio);
             }
             check_rows(scenes.len(), args.seeds.as_ref(), loads.len().max(1))?;
             // One scene alone needs no name.
@@ -88,7 +90,7 @@ impl Surfaces {
             };
             for keys in seeded(args.seeds.as_ref(), name, scene)? {
                 let surface = SweptSurface::new(name, keys, control, &loads).map_err(in_scene)?;
-                surfaces.push(SweptSurface { creep: *creep, ..surface.with(values.clone()) });
+                surfaces.push(surface.with(values.clone(), creep.clone()));
             }
         }
         Ok(Self { control, all: surfaces, n_scenes, keeps_fields: args.fields, run, threads })
@@ -179,9 +181,9 @@ impl SweptSurface {
         memory_factor(&self.contact)
     }
 
-    /// The surface with these values of varied keys.
-    pub(super) fn with(self, varied: Varied) -> Self {
-        Self { varied, ..self }
+    /// The surface with these values of varied keys, under the loads of a solid that has crept.
+    pub(super) fn with(self, varied: Varied, creep: Option<Crept>) -> Self {
+        Self { varied, creep, ..self }
     }
 
     /// Checks the keys of `scene` under the first load. The loads share all other keys.
@@ -236,7 +238,7 @@ impl SweptSurface {
         let mut contact = resolve::contact(keys, self.setup.cell)?;
         // The memory of a machine must not change the digits of a row.
         contact.params.method_follows_memory = false;
-        contact.creep = self.creep;
+        contact.creep = self.creep.as_ref().map(|crept| crept.ratio);
         Ok(contact)
     }
 
@@ -282,7 +284,10 @@ impl SweptSurface {
             varied: self.varied.clone(),
             seed: self.seed,
             surface: json!(surface),
-            contact: json!(self.contact),
+            contact: match &self.creep {
+                Some(crept) => json!(crept.keys.clone().over(self.contact.clone())),
+                None => json!(self.contact),
+            },
             loads: self.loads.clone(),
             map,
             added,

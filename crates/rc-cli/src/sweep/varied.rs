@@ -64,7 +64,7 @@ impl Variation {
     ///
     /// # Errors
     /// One line about a value that is no speed, or occurs twice.
-    pub(super) fn speeds(text: &str) -> Result<Self, String> {
+    pub fn speeds(text: &str) -> Result<Self, String> {
         quantity::check_speeds(text)?;
         Ok(Self { flag: "speeds", ..format!("speed={text}").parse()? })
     }

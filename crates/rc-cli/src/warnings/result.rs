@@ -4,7 +4,7 @@ use rc_core::Boundary;
 use rc_core::quantity::{digits, engineering};
 use rc_solver::{Control, Solution};
 use rc_sweep::Warning;
-use rc_sweep::WarningCode::{Coarse, Edges, Load};
+use rc_sweep::WarningCode::{Coarse, Creep, Edges, Load};
 
 use super::contact::mean_pressure;
 use super::single_spots::SingleSpots;
@@ -29,6 +29,9 @@ pub(crate) fn after(solution: &Solution<'_>, contact: &ContactSetup, is_map: boo
     found.extend(mean.and_then(|mean| mean_pressure(mean, contact)));
     if contact.hardness.is_infinite() {
         found.extend(maximum(maximum_pressure(solution), contact));
+    }
+    if contact.creep.is_some() {
+        found.extend(solution.least_pressure_rise().and_then(relieved));
     }
     if is_map {
         found.extend(single(solution, contact.boundary));
@@ -59,6 +62,18 @@ fn maximum(pressure: f64, contact: &ContactSetup) -> Option<Warning> {
         )
     };
     (pressure > LARGE_PRESSURE * glassy_ratio).then(|| Warning::new(Load, text()))
+}
+
+/// The doubt about creep if the pressure of an elastic contact rises by at least `rise` for each unit of the load.
+fn relieved(rise: f64) -> Option<Warning> {
+    let text = || {
+        format!(
+            "while the contact grows, the pressure falls somewhere (by {} of the rise of the load), where the solid that creeps \
+             may have to pull; there the contact opens, and the area is too large",
+            digits(-rise, 2)
+        )
+    };
+    (rise < 0.0).then(|| Warning::new(Creep, text()))
 }
 
 /// Part of the contact edges where heights jump above which the contact area depends on the samples.

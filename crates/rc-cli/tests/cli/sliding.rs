@@ -90,12 +90,29 @@ fn all_forms_of_a_material_are_one() {
     let at_rest = friction(&run(&place, "solve list.toml --speed 0 --quiet --json"));
     assert_eq!(at_rest.to_bits(), 0, "at rest");
     let printed = run(&place, &format!("solve {SOFT} --pressure 2kPa --speed 0.01 --prony rubber.csv"));
-    assert!(text(&printed.stdout).contains("friction ") && text(&printed.stderr).is_empty(), "{printed:?}");
+    let told = text(&printed.stdout);
+    assert!(told.contains("friction ") && text(&printed.stderr).is_empty(), "{printed:?}");
+    assert!(told.contains("10 mm/s along 0°, over a solid of 2 relaxation times and the glassy ratio 10"), "{told}");
+    // The longest wave has ωτ of 0.00628 and 0.628, so E'' and E' are 2.721 and 2.697 times the relaxed modulus.
+    assert!(told.contains(", loss tangent up to 1.01"), "{told}");
+    // The squares of such frequencies are not finite.
+    assert_solved(&run(&place, &format!("solve {SOFT} --pressure 2kPa --speed 1e300 --prony rubber.csv --quiet")));
     let fast = run(&place, &format!("solve {SOFT} --pressure 2kPa --speed 1e6 --prony rubber.csv"));
     let glassy = "note: at this speed the solid is nearly glassy along the sliding direction, with E* = 39.48 MPa";
     assert!(text(&fast.stderr).contains(glassy), "{fast:?}");
     let slow = run(&place, &format!("solve {SOFT} --pressure 2kPa --speed 1e-9 --prony rubber.csv"));
     assert!(text(&slow.stderr).contains("the solid is elastic, with E* = 3.948 MPa"), "{slow:?}");
+}
+
+#[test]
+fn a_summit_that_coarser_grids_do_not_touch_has_a_friction_with_its_error() {
+    let place = Place::new();
+    let solid = format!("{SOFT} --glassy-ratio 10 --relaxation-time 1ms --speed 0.01");
+    assert_solved(&run(&place, &format!("solve {solid} --penetration 1pm --quiet --out r")));
+    let summary = place.json("r/summary.json");
+    assert!(number(&summary, "friction").abs() > 0.0 && number(&summary, "friction_error") > 0.0, "{summary}");
+    let told = text(&run(&place, "inspect r").stdout);
+    assert!(told.contains("  friction  "), "{told}");
 }
 
 #[test]
@@ -108,7 +125,7 @@ fn what_cannot_slide_is_refused() {
         ("word.csv", "3 1\n6 fast\n"),
         ("empty.csv", "# g tau\n"),
         ("unit.csv", "E (psi), tau (s)\n3 1\n"),
-        ("pascals.csv", "E tau\n3 1\n"),
+        ("shear.csv", "G (MPa), tau (s)\n3 1\n"),
     ] {
         place.write(name, content);
     }
@@ -120,6 +137,10 @@ fn what_cannot_slide_is_refused() {
         ("--prony empty.csv --speed 1", "empty.csv: it has no numbers"),
         ("--prony none.csv --speed 1", "none.csv: cannot read"),
         ("--prony unit.csv --speed 1", "unit.csv: line 1: 'psi' is not a unit of pressure or time"),
+        (
+            "--prony shear.csv --speed 1",
+            "shear.csv: line 1: the first column is 'G'; it must be g, relative to the relaxed",
+        ),
         ("--prony [[1,2] --speed 1", "must be a file, or a list such as [[3,0.001],[6,0.1]]"),
         ("--prony [[1,0]] --speed 1", "prony: term 1: a modulus of 1 and a relaxation time of 0"),
         ("--speed 1", "speed: sliding changes nothing without a material that relaxes; give prony"),
@@ -150,6 +171,13 @@ fn what_cannot_slide_is_refused() {
         let words = format!("solve {SOFT} --pressure 2kPa --quiet {words}");
         assert_refused(&run(&place, &words), expected);
     }
+}
+
+#[test]
+fn moduli_in_pascals_and_profiles_have_their_own_refusals() {
+    let place = Place::new();
+    place.write("rubber.csv", RUBBER);
+    place.write("pascals.csv", "E tau\n3 1\n");
     let of_e_star = "solve --waves 8 --grid 64 --e-star 4MPa --pressure 2kPa --speed 1 --prony pascals.csv";
     assert_refused(
         &run(&place, of_e_star),
@@ -225,6 +253,9 @@ fn a_solid_that_creeps_has_the_area_of_the_elastic_contact_under_the_load_that_g
         column("mean_pressure").iter().all(|pressure| (pressure / 2e3 - 1.0).abs() < 1e-12),
         "the load is constant"
     );
+    // The pressure of a half-space rises by at least the load wherever there is contact, so no point has to pull.
+    let rises = column("least_pressure_rise");
+    assert!(rises.iter().all(|rise| *rise > 1.0) && rises[2] < rises[0], "{rises:?}");
     for absent in ["max_pressure", "rms_pressure", "contact_stiffness", "elastic_energy", "friction"] {
         assert!(!rows[0].iter().any(|head| head == absent), "{absent} is not that of a solid that creeps");
     }
@@ -239,8 +270,27 @@ fn a_solid_that_creeps_has_the_area_of_the_elastic_contact_under_the_load_that_g
     assert_solved(&run(&place, "report s --quiet"));
     let page = text(&place.bytes("s/report.html"));
     assert!(page.contains("\"against\":\"time\"") && !page.contains("--vary time"), "a page of times");
+    let (_, command) = page.split_once("\"text\":\"rc sweep").expect("a command");
+    let command = command.split(" --out again").next().expect("its end");
+    assert!(command.contains(" --times 1e-6,0.01,1.0") && command.contains(" --pressure 2000.0"), "{command}");
+    assert_solved(&run(&place, &format!("sweep{command} --quiet --out repeated")));
+    let repeated = table(&place.path("repeated"));
+    for name in ["time", "control_value", "area_fraction", "permeance_x", "least_pressure_rise"] {
+        let at = rows[0].iter().position(|head| head == name).expect("a column");
+        assert!(repeated.iter().zip(&rows).all(|(one, other)| one[at] == other[at]), "{name}");
+    }
+}
+
+#[test]
+fn what_cannot_creep_is_refused() {
+    let place = Place::new();
+    let solid = format!("{SOFT} --glassy-ratio 10 --relaxation-time 1ms");
     for (words, expected) in [
         ("--pressures 1kPa,2kPa --times 1,2", "times: the load is constant; give one --pressure"),
+        (
+            "--pressures 2kPa,1kPa --times 1,2",
+            "times: after the load falls, a contact that shrinks is not an elastic one",
+        ),
         ("--penetration 1um --times 1,2", "times: a solid creeps under a constant load"),
         ("--pressure 1kPa --times 1,2 --fields", "times: the pressure after a time is not that of an elastic contact"),
         ("--pressure 1kPa --times 1,2 --speed 1", "times: the surface is at rest; omit speed"),

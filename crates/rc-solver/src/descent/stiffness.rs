@@ -19,6 +19,9 @@ const SMALLEST_GAIN: f64 = 3e-4;
 /// Who stops a solve does not want to wait for as many applications of L again.
 const ROUGH_GAIN: f64 = 3e-2;
 
+/// The same for a pressure whose minimum is wanted.
+const GAIN_OF_RISE: f64 = 1e-6;
+
 /// Maximum number of steps, enough for the worst scenes at [`SMALLEST_GAIN`].
 ///
 /// It is reached only when rounding prevents progress.
@@ -56,6 +59,20 @@ pub(crate) fn stiffness_pressure(
     let mut x = vec![0.0_f32; pressure.len()];
     search(pressure, (n, gain(converged)), operator, |length, directions| directions.add_to(&mut x, length));
     x
+}
+
+/// The smallest dp/dσ0 of the contact set {p > 0}, as the set is held fixed: min x/⟨x⟩ for the x of [`stiffness_of`].
+///
+/// A half-space has at least 1. With u = L x, the pressure is x = u'/2 + ⟨x⟩ for the operator u' = ∫ (u(r) - u(s))/|r - s|³ ds
+/// (up to a factor), which is negative out of contact. So u has its maximum in contact, where u' is therefore positive.
+pub(crate) fn least_rise(pressure: &[f64], n: f64, operator: &mut dyn PreconditionedOperator) -> f64 {
+    let mut x = vec![0.0_f32; pressure.len()];
+    search(pressure, (n, GAIN_OF_RISE), operator, |length, directions| directions.add_to(&mut x, length));
+    let layout = operator.layout();
+    let sums = parallel::map(x.chunks(layout.len()), |x| [x.iter().copied().map(f64::from).sum::<f64>()]);
+    let [sum] = layout.total(sums);
+    let in_contact = x.iter().zip(pressure).filter(|(_, p)| **p > 0.0).map(|(&x, _)| f64::from(x) * n / sum);
+    layout.minimum(&in_contact.collect::<Vec<f64>>())
 }
 
 pub(crate) fn gain(converged: bool) -> f64 {

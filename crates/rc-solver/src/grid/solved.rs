@@ -9,7 +9,7 @@ use rc_kernel::Spectral;
 use crate::descent::contact_element::ContactElement;
 use crate::descent::info::{GridSolution, SolveInfo, Status};
 use crate::grid::solve_with_operator::stiffness_with_operator;
-use crate::grid::stiffness::contact_stiffness;
+use crate::grid::stiffness::{contact_stiffness, least_rise};
 use crate::grid::uniform_operator::UniformOperator;
 use crate::problem::kernel::OwnedKernel;
 use crate::problem::support::Support;
@@ -197,6 +197,13 @@ impl Solved for GridSolved<'_> {
 
     fn stiffness(&self) -> f64 {
         self.response.stiffness(&self.solution, self.hardness)
+    }
+
+    fn least_rise(&self) -> Option<f64> {
+        match &self.response {
+            Response::Kernel(kernel) => Some(least_rise(&self.solution.pressure, kernel.get())),
+            Response::Operator(_) | Response::Outlived { .. } => None,
+        }
     }
 
     fn conductance(&self) -> Option<f64> {

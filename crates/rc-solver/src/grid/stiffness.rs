@@ -2,7 +2,7 @@
 
 use rc_core::{Boundary, Field, Kernel};
 
-use crate::descent::stiffness::{elastic_part, gain, search, stiffness_by_gmres};
+use crate::descent::stiffness::{self, elastic_part, gain, search, stiffness_by_gmres};
 use crate::grid::operators::corrections_of;
 use crate::grid::response::GridResponse;
 use crate::problem::support::Support;
@@ -21,6 +21,18 @@ pub(crate) fn contact_stiffness(pressure: &Field, hardness: f64, kernel: &dyn Ke
         return stiffness_by_gmres(&pressure, (grid.len() as f64, converged), &mut *operator);
     }
     search(&pressure, (grid.len() as f64, gain(converged)), &mut *operator, |_, _| {})
+}
+
+/// The smallest dp/dσ0 of the contact, as [`stiffness::least_rise`].
+///
+/// It is 1 in full contact, where the pressure rises everywhere by the load.
+pub(crate) fn least_rise(pressure: &Field, kernel: &dyn Kernel) -> f64 {
+    let (grid, values) = (pressure.grid(), pressure.values());
+    if Support::of(kernel, grid).boundary == Boundary::Periodic && values.iter().all(|&p| p > 0.0) {
+        return 1.0;
+    }
+    let mut operator = corrections_of(grid, kernel, &GridResponse::of(grid, kernel));
+    stiffness::least_rise(values, grid.len() as f64, &mut *operator)
 }
 
 #[cfg(test)]

@@ -110,7 +110,9 @@ pub(crate) fn finished(
     let distance = info.certificate.energy * info.elastic_energy.max(0.0).sqrt();
     let bound = distance * sums.slope.sqrt() / load;
     let iteration = info.iteration_error.powi(2) * coefficient.abs();
-    let of_grid = match (status, info.coarser.and_then(|coarser| coarser.friction)) {
+    // The coarser grid of a small penetration may have no contact, and then no friction coefficient.
+    let of_coarser = info.coarser.and_then(|coarser| coarser.friction).filter(|friction| friction.is_finite());
+    let of_grid = match (status, of_coarser) {
         // All waves are there, and only the elements matter.
         (Status::FullContact, _) if is_exact => 0.0,
         (Status::FullContact, _) => sums.missed.abs() / load,

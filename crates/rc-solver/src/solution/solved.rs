@@ -57,6 +57,9 @@ pub(crate) trait Solved: Send + Sync {
     /// Contact stiffness, in E*/λ.
     fn stiffness(&self) -> f64;
 
+    /// The smallest dp/dσ0 of an elastic contact at rest, if its response is known.
+    fn least_rise(&self) -> Option<f64>;
+
     /// dσ0/dΔ if a half-space is held down by all contact spots, in E*/λ; `None` where that is the contact stiffness.
     ///
     /// Plastic elements are part of the spots, and a layer is replaced by the half-space. It is infinite in full contact.

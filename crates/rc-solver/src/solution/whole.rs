@@ -41,6 +41,7 @@ pub struct Solution<'a> {
     observables: OnceLock<(Observables, f64)>,
     stiffness: OnceLock<f64>,
     conductance: OnceLock<f64>,
+    least_rise: OnceLock<Option<f64>>,
 }
 
 /// The parts of its plan that a solution keeps.
@@ -72,6 +73,7 @@ impl<'a> Solution<'a> {
             observables: OnceLock::new(),
             stiffness: OnceLock::new(),
             conductance: OnceLock::new(),
+            least_rise: OnceLock::new(),
         }
     }
 
@@ -81,10 +83,33 @@ impl<'a> Solution<'a> {
     /// ([`rc_core::Kernel::to_shared`]). If there is none, displacement and stiffness are computed now.
     #[must_use]
     pub fn into_owned(self) -> Solution<'static> {
-        let Self { how, summit, solved, pressure, gap, plastic_gap, displacement, observables, stiffness, conductance } =
-            self;
+        let Self {
+            how,
+            summit,
+            solved,
+            pressure,
+            gap,
+            plastic_gap,
+            displacement,
+            observables,
+            stiffness,
+            conductance,
+            least_rise,
+        } = self;
         let solved = solved.into_owned();
-        Solution { how, summit, solved, pressure, gap, plastic_gap, displacement, observables, stiffness, conductance }
+        Solution {
+            how,
+            summit,
+            solved,
+            pressure,
+            gap,
+            plastic_gap,
+            displacement,
+            observables,
+            stiffness,
+            conductance,
+            least_rise,
+        }
     }
 
     /// How the solve ended.
@@ -218,6 +243,16 @@ impl<'a> Solution<'a> {
     #[must_use]
     pub fn stiffness(&self) -> f64 {
         *self.stiffness.get_or_init(|| self.solved.stiffness())
+    }
+
+    /// The smallest dp/dσ0 in an elastic contact at rest, at this load. `None` if the kernel makes no copy of itself, and
+    /// with an operator of the caller.
+    ///
+    /// The pressure of a half-space rises by at least the load wherever there is contact, so it is at least 1. On a layer
+    /// it may be less. Where it is negative, a growing load relieves a point, and the creep of Lee and Radok pulls there.
+    #[must_use]
+    pub fn least_pressure_rise(&self) -> Option<f64> {
+        *self.least_rise.get_or_init(|| self.solved.least_rise())
     }
 
     /// Electrical or thermal conductance of the contact spots for unit conductivity, per nominal area, in 1/λ.

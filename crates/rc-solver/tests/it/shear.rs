@@ -178,7 +178,7 @@ fn what_slides_or_cannot_be_sheared_is_refused() {
         let error = of(&wrong).expect_err("a parameter out of range");
         assert!(matches!(error, ShearError::Parameter { .. }), "{error}");
     }
-    let layer = LoveLayer(Layer { thickness: 0.3, poisson: 0.3 });
+    let layer = LoveLayer(Layer::on_rigid_base(0.3, 0.3));
     let refused = sheared((&heights, &layer), &shear(0.5, 0.0), &SolveParams::default()).expect_err("a layer");
     assert!(matches!(refused, ShearError::Unsupported(_)), "{refused}");
     let few = SolveParams { memory_limit: Some(100_000), ..SolveParams::default() };

@@ -69,3 +69,25 @@ fn digits_do_not_depend_on_the_number_of_threads() {
     let (one, two) = (with_threads(1), with_threads(3));
     assert!(one == two, "{:?}, {:?}", one.0, two.0);
 }
+
+/// A solid that creeps has an increment of the elastic pressure for each time, which must not be negative.
+#[test]
+fn the_pressure_of_a_growing_contact_rises_everywhere_by_at_least_the_load() {
+    let heights = bumps(SIDE, SIDE);
+    let solve = |load: f64, method: Method| {
+        let params = SolveParams { method: Some(method), ..SolveParams::to_tolerance(1e-8) };
+        let problem = ContactProblem::new(&heights, Control::MeanPressure(load));
+        problem.solve(&params, &Silent).expect("a solution").into_owned()
+    };
+    for (load, method) in [(1e-3, Method::Uniform), (1e-3, Method::Adaptive), (8e-3, Method::Uniform)] {
+        // A small step hardly changes the contact, so its increment is that of the fixed contact.
+        let [before, after] = [load, 1.001 * load].map(|load| solve(load, method));
+        let pairs = before.pressure().values().iter().zip(after.pressure().values());
+        let rises = pairs.filter(|(before, _)| **before > 0.0).map(|(before, after)| (after - before) / (1e-3 * load));
+        let (found, expected) = (before.least_pressure_rise().expect("a kernel"), rises.fold(f64::INFINITY, f64::min));
+        assert!(found >= 1.0, "{found}");
+        assert!((found / expected - 1.0).abs() < 0.02, "{load} {method:?}: {found} for {expected}");
+    }
+    let full = solve(1.0, Method::Uniform);
+    assert_eq!(full.least_pressure_rise(), Some(1.0));
+}

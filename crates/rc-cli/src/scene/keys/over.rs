@@ -73,7 +73,7 @@ impl ContactKeys {
             (lower.tolerance, lower.energy_tolerance) = (None, None);
         }
         or_lower!(self, lower, {
-            young, poisson, young2, poisson2, e_star, pressure, penetration, force, hardness, speed, direction, prony, glassy_ratio, relaxation_time, fractional, friction, shear_pressure, shear_displacement, shear_angle, conductivity, kernel, boundary, layer_thickness, layer_poisson, method, border_level,
+            young, poisson, young2, poisson2, e_star, pressure, penetration, force, hardness, speed, direction, prony, glassy_ratio, relaxation_time, fractional, friction, shear_pressure, shear_displacement, shear_angle, conductivity, kernel, boundary, layer_thickness, layer_poisson, substrate_young, substrate_poisson, method, border_level,
             energy_tolerance, tolerance, area_error, viscosity, pressure_drop, output_grid, precision
         });
         self.leakage |= lower.leakage;
@@ -86,8 +86,14 @@ impl ContactKeys {
 impl ContactKeys {
     /// These keys without a material that relaxes.
     #[must_use]
-    pub(crate) fn elastic(self) -> Self {
+    pub fn elastic(self) -> Self {
         Self { prony: None, glassy_ratio: None, relaxation_time: None, fractional: None, ..self }
+    }
+
+    /// The keys of the material that relaxes alone.
+    pub(crate) fn relaxing(self) -> Self {
+        let Self { prony, glassy_ratio, relaxation_time, fractional, .. } = self;
+        Self { prony, glassy_ratio, relaxation_time, fractional, ..Self::default() }
     }
 }
 

@@ -29,6 +29,12 @@ impl SlidingSolid {
         self.speed / side * unit_vector(self.direction)
     }
 
+    /// The unit vector along the velocity; `None` at rest.
+    #[must_use]
+    pub fn heading(&self) -> Option<DVec2> {
+        (self.speed > 0.0).then(|| unit_vector(self.direction))
+    }
+
     /// Refuses a direction across a profile, which is one row.
     pub(crate) fn check_on(&self, grid: Grid) -> Result<(), CliError> {
         if grid.ny() == 1 && unit_vector(self.direction).y != 0.0 {
@@ -60,11 +66,6 @@ pub(crate) fn in_words(keys: &ContactKeys) -> Option<String> {
     };
     let ratio = digits(material.glassy_ratio(), 4);
     Some(format!("{speed} along {direction}°, over a solid of {times} and the glassy ratio {ratio}"))
-}
-
-/// The unit vector along the direction of these keys.
-pub(crate) fn direction(keys: &ContactKeys) -> DVec2 {
-    unit_vector(keys.direction.unwrap_or(0.0))
 }
 
 /// The unit vector at this angle (degrees), which is exact along the axes.
@@ -121,13 +122,18 @@ pub(super) fn solid(keys: &ContactKeys) -> Result<Option<SlidingSolid>, CliError
     }
 }
 
-/// The material of these keys for creep at rest.
+/// The material of these keys for creep at rest, and the keys with its terms.
 ///
 /// # Errors
 /// [`CliError::Input`] without a Prony series, and for a surface that slides or a hardness.
-pub(crate) fn creeping(keys: &ContactKeys) -> Result<Relaxation, CliError> {
+pub(crate) fn creeping(keys: &ContactKeys) -> Result<(Relaxation, ContactKeys), CliError> {
     if keys.speed.is_some() || keys.direction.is_some() {
         return Err(CliError::input("times: the surface is at rest; omit speed and direction, or times"));
+    }
+    if keys.substrate_young.is_some() {
+        return Err(CliError::input(
+            "times: a coating creeps on a substrate that does not; omit times, or substrate_young",
+        ));
     }
     if keys.hardness.is_some() {
         return Err(CliError::input("times: a solid with a hardness does not creep by this rule; omit one of them"));
@@ -135,7 +141,7 @@ pub(crate) fn creeping(keys: &ContactKeys) -> Result<Relaxation, CliError> {
     let defaults = ContactKeys { young: file::example().contact.young, ..ContactKeys::default() };
     let keys = with_terms(keys.clone().over(defaults))?;
     match material(&keys)? {
-        Some((_, material)) if material.creep(0.0).is_some() => Ok(material),
+        Some((_, material)) if material.creep(0.0).is_some() => Ok((material, keys)),
         Some((key, _)) => Err(CliError::input(format_args!("{key}: its creep is not known; give prony"))),
         None => Err(CliError::input(
             "times: an elastic solid does not creep; give prony, or glassy_ratio and relaxation_time",
