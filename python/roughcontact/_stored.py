@@ -16,6 +16,9 @@ from roughcontact._records import ContactSpot, Floats
 #: Fluxes along x and y.
 FLUX_FILES = ("flow_x.npy", "flow_y.npy")
 
+#: Files of the tractions of a sheared contact and its slip.
+SHEAR_FILES = ("shear_x.npy", "shear_y.npy", "slip.npy")
+
 
 class Source(Protocol):
     """Where a result comes from: a solve, or the files of one."""
@@ -29,6 +32,7 @@ class Source(Protocol):
     def displacement(self) -> Floats: ...
     def finest_gap(self) -> Floats | None: ...
     def plastic_gap(self) -> Floats | None: ...
+    def shear(self) -> list[Floats] | None: ...
     def flux(self) -> list[Floats] | None: ...
     def elements(self) -> list[Floats] | None: ...
     def save(self, folder: str) -> None: ...
@@ -66,6 +70,13 @@ class Stored:
     def plastic_gap(self) -> Floats | None:
         there = "plastic_gap" in self.fields or "plastic_gap.npy" in self.files
         return self._array("plastic_gap") if there else None
+
+    def shear(self) -> list[Floats] | None:
+        if "shear" in self.fields:
+            return list(self.fields["shear"])
+        if SHEAR_FILES[0] not in self.files:
+            return None
+        return [_double(self.files[name]) for name in SHEAR_FILES]
 
     def flux(self) -> list[Floats] | None:
         if FLUX_FILES[0] not in self.files:
@@ -118,4 +129,5 @@ FILES = (
     *("summary.json", "scene.toml", "pressure.npy", "gap.npy", "plastic_gap.npy"),
     *("contact.png", "elements.csv", "heights.npy", "leakage.png"),
     *FLUX_FILES,
+    *SHEAR_FILES,
 )

@@ -8,13 +8,14 @@ use std::time::Duration;
 use rc_core::{DVec2, Field, Grid, Units};
 use rc_heights::npy::{Precision, RowWriter};
 use rc_plot::{ContactRows, save_png};
-use rc_solver::{ContactElement, Solution};
+use rc_solver::{ContactElement, Solution, Status};
 use rc_sweep::files::{FileError, Staged};
 use rc_sweep::{MapOrigin, SecondBody, SolveContext, Summary, Warning};
 
 use super::leakage::SolvedFlow;
 use super::map_file::MapFile;
-use super::{flow_files, shared_fields};
+use super::shear::SolvedShear;
+use super::{flow_files, shared_fields, shear};
 use crate::error::CliError;
 use crate::files::kind::Kind;
 use crate::files::names::{GROUP, HEIGHTS_FILE, PLASTIC_GAP_FILE, SCENE_FILE, SUMMARY_FILE};
@@ -42,6 +43,8 @@ pub struct ResultFiles<'a> {
     pub solution: &'a Solution<'a>,
     /// The flow through the gap, if it was asked for.
     pub flow: Option<&'a SolvedFlow>,
+    /// The shear of the contact, if it was asked for.
+    pub shear: Option<&'a SolvedShear>,
     /// The warnings that were known before the solve.
     pub warnings: &'a [Warning],
     /// The file of the map, if it was read from one.
@@ -91,8 +94,22 @@ impl ResultFiles<'_> {
         let second_body = keys.young2.zip(keys.poisson2).map(|(young, poisson)| SecondBody { young, poisson });
         let control = if keys.force.is_some() { "force".to_owned() } else { summary.control };
         let (force, source) = (keys.force, self.origin.cloned());
+        let is_open = self.shear.is_some_and(|shear| !shear.has_converged);
+        let status = if is_open { Status::NotConverged.name().to_owned() } else { summary.status };
+        let shear = self.shear.map(|shear| shear.summary(self.contact));
         let least_pressure_rise = self.contact.creep.and_then(|_| self.solution.least_pressure_rise());
-        Summary { control, force, least_pressure_rise, leakage, warnings, source, second_body, ..summary }
+        Summary {
+            status,
+            control,
+            force,
+            least_pressure_rise,
+            leakage,
+            shear,
+            warnings,
+            source,
+            second_body,
+            ..summary
+        }
     }
 
     /// The warnings from before the solve, and those that only the solution shows.
@@ -147,6 +164,9 @@ impl ResultFiles<'_> {
         add_fields(&mut staged, self.contact, self.solution)?;
         if let Some(flow) = self.flow {
             flow_files::add(&mut staged, self.contact, flow, self.solution)?;
+        }
+        if let Some(shear) = self.shear {
+            shear::add(&mut staged, self.contact, shear)?;
         }
         self.finish(staged, summary)
     }

@@ -13,6 +13,7 @@ use super::failure::Failure;
 use super::leakage::{self, SolvedFlow};
 use super::messages;
 use super::result_files::{MapHeights, ResultFiles};
+use super::shear::SolvedShear;
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
 use crate::files::coarsen::check_factor;
@@ -41,6 +42,8 @@ pub struct Solved<'a> {
     failure: Option<Failure>,
     /// The flow through the gap, if it was asked for.
     flow: Option<SolvedFlow>,
+    /// The shear of the contact, if it was asked for.
+    shear: Option<SolvedShear>,
     /// The warnings that were known before the solve.
     warnings: Vec<Warning>,
     wall: Duration,
@@ -55,6 +58,8 @@ pub struct SolvedParts<'a> {
     pub failure: Option<Failure>,
     /// The flow through the gap, if it was asked for and converged.
     pub flow: Option<SolvedFlow>,
+    /// The shear of the contact, if it was asked for and solved.
+    pub shear: Option<SolvedShear>,
     /// The warnings that were known before the solve.
     pub warnings: Vec<Warning>,
     /// Time to the certified solution.
@@ -80,8 +85,18 @@ impl<'a> ProblemSetup<'a> {
     /// # Errors
     /// [`CliError::Input`]. A solution that did not converge is not an error, see [`Solved::failure`].
     pub fn solve(self, started: Instant, observer: &dyn Observer) -> Result<Solved<'a>, CliError> {
-        let result = self.plan()?.solve(observer);
-        self.solved(result, started)
+        let plan = self.plan()?;
+        let Some(shear) = &self.contact.shear else { return self.solved(plan.solve(observer), started) };
+        let again = plan.under(self.contact.control).map_err(|error| self.refuse(&error))?;
+        let solved = self.solved(plan.solve(observer), started)?;
+        if solved.failure.is_some() {
+            return Ok(solved);
+        }
+        let (shear, failure) = {
+            let refuse = |error: &SolveError| self.refuse(error);
+            SolvedShear::of((&again, &solved.solution), (shear, self.contact.units), observer, &refuse)?
+        };
+        Ok(Solved { shear, failure, wall: started.elapsed(), ..solved })
     }
 
     /// The problem as a row of a sweep, with `kernel`, which is the kernel of this problem.
@@ -211,7 +226,7 @@ impl<'a> ProblemSetup<'a> {
             }
             None => (None, failure),
         };
-        Solved { problem: self, solution, failure, flow, warnings: self.warnings(), wall }
+        Solved { problem: self, solution, failure, flow, shear: None, warnings: self.warnings(), wall }
     }
 
     /// The solver's refusal in SI units.
@@ -224,8 +239,8 @@ impl<'a> Solved<'a> {
     /// The parts of the solution, without the problem.
     #[must_use]
     pub fn into_parts(self) -> SolvedParts<'a> {
-        let Self { solution, failure, flow, warnings, wall, .. } = self;
-        SolvedParts { solution, failure, flow, warnings, wall }
+        let Self { solution, failure, flow, shear, warnings, wall, .. } = self;
+        SolvedParts { solution, failure, flow, shear, warnings, wall }
     }
 
     /// Number of warnings that were known before the solve.
@@ -275,8 +290,10 @@ impl<'a> Solved<'a> {
         let ProblemSetup { surface, contact, .. } = self.problem;
         let map = surface.map().map(|(heights, as_read)| MapHeights::InCell { heights, as_read });
         let waves = surface.wave_file().map(AsRef::as_ref);
-        let (flow, warnings, origin) = (self.flow.as_ref(), &self.warnings[..], surface.origin.as_ref());
-        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution, flow, warnings, origin }
+        let (flow, shear) = (self.flow.as_ref(), self.shear.as_ref());
+        let (warnings, origin) = (&self.warnings[..], surface.origin.as_ref());
+        let (surface, solution) = (&surface.keys, &self.solution);
+        ResultFiles { surface, map, waves, contact, solution, flow, shear, warnings, origin }
     }
 }
 

@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+use rc_solver::Feature;
 use rc_sweep::{ControlKind, FileMark, Loads, MAX_ROWS, PlannedSurface, Seeds, SweepPlan, SweepRow};
 use serde_json::json;
 
@@ -15,10 +16,10 @@ use crate::error::CliError;
 use crate::files::names::SCENE_FILE;
 use crate::run::threads;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene};
-use crate::scene::like;
 use crate::scene::resolve::{self, ContactSetup};
 use crate::scene::surface::{Source, SurfaceSetup};
 use crate::scene::written;
+use crate::scene::{features, like};
 use crate::solve::memory_factor;
 
 /// One surface with its loads.
@@ -220,6 +221,7 @@ impl SweptSurface {
             _ => loads.to_vec(),
         };
         let keys = with_load(control, contact, loads.first().copied());
+        features::check(&keys, [Feature::Sweep])?;
         let contact = resolve::contact(keys, setup.cell)?;
         let setup = setup.bounded(contact.boundary)?;
         let contact = with_load(control, &contact.keys, None);

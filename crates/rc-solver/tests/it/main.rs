@@ -9,6 +9,7 @@ mod hardness_of_solids;
 mod observers;
 mod operators;
 mod over_ranks;
+mod shear;
 mod sliding;
 mod split;
 mod stops;

@@ -5,11 +5,12 @@ use std::sync::Arc;
 use rc_comm::Ranks;
 use rc_core::{Boundary, Elasticity, Kernel, PeriodicCell, UnitError, Units};
 use rc_kernel::{FreeLove, Layer, Love, LoveLayer, Spectral, SpectralLayer, Viscoelastic};
-use rc_solver::{Control, Feature, SolveParams, Tolerance};
+use rc_solver::{Control, SolveParams, Tolerance};
 
 use super::checks::{missing, positive};
+use super::shear::ShearSetup;
 use super::sliding::SlidingSolid;
-use super::{elastic_layer, sliding};
+use super::{elastic_layer, shear, sliding};
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
 use crate::scene::keys::{ContactKeys, KernelName};
@@ -33,6 +34,8 @@ pub struct ContactSetup {
     pub layer: Option<Layer>,
     /// Sliding over a material that relaxes, if the surface slides.
     pub sliding: Option<SlidingSolid>,
+    /// Shear of the contact with partial slip, if it is sheared.
+    pub shear: Option<ShearSetup>,
     /// Ratio of the load of this elastic contact to the load under which a solid has crept; `None` without creep.
     pub creep: Option<f64>,
     /// Method, tolerance and limits, without the available memory.
@@ -112,11 +115,11 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     let control = control(&keys, units)?;
     let hardness = hardness(&keys, (control, units))?;
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
-    // A single solve has removed a wanted error of the area, and has a check of its own.
-    features::check(&keys, [Feature::Sweep])?;
+    features::check(&keys, None)?;
     let boundary = keys.boundary.unwrap_or_default();
     let layer = elastic_layer::layer(&keys, units)?;
     let sliding = sliding::solid(&keys)?;
+    let shear = shear::shear(&keys, (control, units))?;
     let params = SolveParams {
         tolerance: tolerance(&keys)?,
         method: keys.method,
@@ -132,6 +135,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
         boundary,
         layer,
         sliding,
+        shear,
         creep,
         params,
         keys,
