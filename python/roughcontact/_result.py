@@ -224,6 +224,12 @@ class Result:
         field = self._source.plastic_gap()
         return None if field is None else _locked(field)
 
+    @cached_property
+    def residual(self) -> Floats | None:
+        """Heights of the unloaded surface after ``history`` (m), shape (ny, nx), read-only. None without it, and if it did not converge."""
+        field = self._source.residual()
+        return None if field is None else _locked(field)
+
     @property
     def force(self) -> float | None:
         """The force that was prescribed (N). None if pressure or penetration was."""
@@ -253,6 +259,11 @@ class Result:
     def mean_plastic_gap(self) -> float | None:
         """Mean over the cell of the overlap that plastic flow has removed (m). None without a hardness."""
         return self.summary.get("mean_plastic_gap")
+
+    @property
+    def residual_rms_height(self) -> float | None:
+        """Rms height of :attr:`residual` (m). None without ``history``."""
+        return self.summary.get("residual_rms_height")
 
     @property
     def friction(self) -> float | None:

@@ -29,6 +29,7 @@ class Source(Protocol):
     def displacement(self) -> Floats: ...
     def finest_gap(self) -> Floats | None: ...
     def plastic_gap(self) -> Floats | None: ...
+    def residual(self) -> Floats | None: ...
     def flux(self) -> list[Floats] | None: ...
     def elements(self) -> list[Floats] | None: ...
     def save(self, folder: str) -> None: ...
@@ -66,6 +67,9 @@ class Stored:
     def plastic_gap(self) -> Floats | None:
         there = "plastic_gap" in self.fields or "plastic_gap.npy" in self.files
         return self._array("plastic_gap") if there else None
+
+    def residual(self) -> Floats | None:
+        return self._array("residual") if "residual.npy" in self.files else None
 
     def flux(self) -> list[Floats] | None:
         if FLUX_FILES[0] not in self.files:
@@ -115,7 +119,7 @@ def files_in(folder: str) -> dict[str, bytes]:
 
 #: Files of a result folder; the others there belong to somebody else.
 FILES = (
-    *("summary.json", "scene.toml", "pressure.npy", "gap.npy", "plastic_gap.npy"),
+    *("summary.json", "scene.toml", "pressure.npy", "gap.npy", "plastic_gap.npy", "residual.npy"),
     *("contact.png", "elements.csv", "heights.npy", "leakage.png"),
     *FLUX_FILES,
 )

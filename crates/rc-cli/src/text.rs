@@ -60,7 +60,9 @@ pub(crate) fn solved_lines(
         lines.splice(4..4, sliding.map(|sliding| ("sliding", sliding)));
     }
     if let Some(plastic) = plastic(s) {
-        lines.insert(4, ("plastic area", plastic));
+        let residual =
+            s.residual_rms_height.map(|rms| ("unloaded surface", format!("rms height {}", engineering(rms, "m"))));
+        lines.splice(4..4, std::iter::once(("plastic area", plastic)).chain(residual));
     }
     if let Some(leakage) = &s.leakage {
         lines.extend(leakage_lines(leakage));

@@ -77,6 +77,9 @@ pub struct Summary {
     /// Mean over the cell of the overlap that plastic flow has removed (m).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_plastic_gap: Option<f64>,
+    /// rms height of the unloaded surface after a history of loads (m).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub residual_rms_height: Option<f64>,
     /// Length of the edges of all contacts (m).
     pub contact_perimeter: Option<f64>,
     /// rms pressure over the cell (Pa), from the pressures of elements.
@@ -270,6 +273,7 @@ impl Summary {
             plastic_area_fraction: observables.plastic.map(|plastic| plastic.fraction),
             plastic_area_fraction_error: observables.plastic.map(|plastic| plastic.error),
             mean_plastic_gap: observables.plastic.map(|plastic| units.metres(plastic.mean_gap)),
+            residual_rms_height: None,
             contact_perimeter: Some(units.metres(observables.area.perimeter)),
             rms_pressure: units.pascals(observables.rms_pressure),
             rms_pressure_corrected: Some(units.pascals(observables.rms_pressure_corrected)),

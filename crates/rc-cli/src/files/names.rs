@@ -39,5 +39,8 @@ pub(crate) const DIFFERENCE_FILE: &str = "difference.png";
 /// The coefficients of waves.
 pub(crate) const WAVES_FILE: &str = "spectrum.txt";
 
+/// The unloaded surface after a history of loads.
+pub(crate) const RESIDUAL_FILE: &str = "residual.npy";
+
 /// The overlap that plastic flow has removed, with a hardness.
 pub(crate) const PLASTIC_GAP_FILE: &str = "plastic_gap.npy";

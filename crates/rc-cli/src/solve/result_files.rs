@@ -6,6 +6,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use rc_core::{DVec2, Field, Grid, Units};
+use rc_fractal::height_and_slope_of_grid;
 use rc_heights::npy::{Precision, RowWriter};
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution};
@@ -17,7 +18,7 @@ use super::map_file::MapFile;
 use super::{flow_files, shared_fields};
 use crate::error::CliError;
 use crate::files::kind::Kind;
-use crate::files::names::{GROUP, HEIGHTS_FILE, PLASTIC_GAP_FILE, SCENE_FILE, SUMMARY_FILE};
+use crate::files::names::{GROUP, HEIGHTS_FILE, PLASTIC_GAP_FILE, RESIDUAL_FILE, SCENE_FILE, SUMMARY_FILE};
 use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
@@ -40,6 +41,8 @@ pub struct ResultFiles<'a> {
     pub contact: &'a ContactSetup,
     /// The solution.
     pub solution: &'a Solution<'a>,
+    /// The unloaded surface after a history of loads (λ).
+    pub residual: Option<&'a Field>,
     /// The flow through the gap, if it was asked for.
     pub flow: Option<&'a SolvedFlow>,
     /// The warnings that were known before the solve.
@@ -92,7 +95,19 @@ impl ResultFiles<'_> {
         let control = if keys.force.is_some() { "force".to_owned() } else { summary.control };
         let (force, source) = (keys.force, self.origin.cloned());
         let least_pressure_rise = self.contact.creep.and_then(|_| self.solution.least_pressure_rise());
-        Summary { control, force, least_pressure_rise, leakage, warnings, source, second_body, ..summary }
+        let residual_rms_height =
+            self.residual.map(|heights| self.contact.units.metres(height_and_slope_of_grid(heights)[0]));
+        Summary {
+            control,
+            force,
+            residual_rms_height,
+            least_pressure_rise,
+            leakage,
+            warnings,
+            source,
+            second_body,
+            ..summary
+        }
     }
 
     /// The warnings from before the solve, and those that only the solution shows.
@@ -155,6 +170,14 @@ impl ResultFiles<'_> {
     fn finish(&self, mut staged: Staged, summary: &Summary) -> Result<(), FileError> {
         if let Some(map) = self.map {
             staged.add(HEIGHTS_FILE, |path| map.write(path))?;
+        }
+        if let Some(residual) = self.residual {
+            staged.add(RESIDUAL_FILE, |path| {
+                let side = self.contact.units.cell().side();
+                let mut file = RowWriter::create(path, residual.grid(), side, Precision::Double)?;
+                file.write(residual.values())?;
+                file.finish()
+            })?;
         }
         if let Some(waves) = self.waves {
             staged.add(waves.name(), |path| waves.write(path))?;

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use rc_core::{Boundary, Kernel, Observer};
-use rc_solver::{ContactProblem, Cost, Plan, Solution, SolveError, SolveParams};
+use rc_core::{Boundary, Field, Kernel, Observer};
+use rc_solver::{ContactProblem, Cost, History, Plan, Solution, SolveError, SolveParams};
 use rc_sweep::memory::Budget;
 use rc_sweep::{RowProblem, SolvedRow, Summary, Warning};
 
@@ -39,6 +39,8 @@ pub struct Solved<'a> {
     problem: ProblemSetup<'a>,
     solution: Solution<'a>,
     failure: Option<Failure>,
+    /// The unloaded surface after a history of loads (λ), if it converged.
+    residual: Option<Field>,
     /// The flow through the gap, if it was asked for.
     flow: Option<SolvedFlow>,
     /// The warnings that were known before the solve.
@@ -53,6 +55,8 @@ pub struct SolvedParts<'a> {
     pub solution: Solution<'a>,
     /// What did not converge, if anything.
     pub failure: Option<Failure>,
+    /// The unloaded surface after a history of loads (λ), if it converged.
+    pub residual: Option<Field>,
     /// The flow through the gap, if it was asked for and converged.
     pub flow: Option<SolvedFlow>,
     /// The warnings that were known before the solve.
@@ -80,8 +84,18 @@ impl<'a> ProblemSetup<'a> {
     /// # Errors
     /// [`CliError::Input`]. A solution that did not converge is not an error, see [`Solved::failure`].
     pub fn solve(self, started: Instant, observer: &dyn Observer) -> Result<Solved<'a>, CliError> {
-        let result = self.plan()?.solve(observer);
-        self.solved(result, started)
+        let plan = self.plan()?;
+        if self.contact.history.is_empty() {
+            return self.solved(plan.solve(observer), started);
+        }
+        drop(plan);
+        let (mut residual, loads) = (None, &self.contact.history);
+        let result = self.contact_problem().solve_history(loads, &self.params(), observer).map(|found| {
+            let History { solution, residual: left } = found;
+            residual = Some(left);
+            solution
+        });
+        Ok(Solved { residual, ..self.solved(result, started)? })
     }
 
     /// The problem as a row of a sweep, with `kernel`, which is the kernel of this problem.
@@ -136,6 +150,9 @@ impl<'a> ProblemSetup<'a> {
     /// The cost of the solve by `plan`, with the flow if it is asked for.
     pub(crate) fn cost(&self, plan: &Plan<'_>) -> Cost {
         let cost = plan.cost();
+        // Loads of 0 take nothing.
+        let n_loads = self.contact.history.iter().filter(|load| **load > 0.0).count().max(1) as f64;
+        let cost = Cost { cpu_seconds: cost.cpu_seconds.map(|seconds| n_loads * seconds), ..cost };
         if !self.contact.keys.leakage {
             return cost;
         }
@@ -211,7 +228,7 @@ impl<'a> ProblemSetup<'a> {
             }
             None => (None, failure),
         };
-        Solved { problem: self, solution, failure, flow, warnings: self.warnings(), wall }
+        Solved { problem: self, solution, failure, residual: None, flow, warnings: self.warnings(), wall }
     }
 
     /// The solver's refusal in SI units.
@@ -224,8 +241,8 @@ impl<'a> Solved<'a> {
     /// The parts of the solution, without the problem.
     #[must_use]
     pub fn into_parts(self) -> SolvedParts<'a> {
-        let Self { solution, failure, flow, warnings, wall, .. } = self;
-        SolvedParts { solution, failure, flow, warnings, wall }
+        let Self { solution, failure, residual, flow, warnings, wall, .. } = self;
+        SolvedParts { solution, failure, residual, flow, warnings, wall }
     }
 
     /// Number of warnings that were known before the solve.
@@ -276,7 +293,8 @@ impl<'a> Solved<'a> {
         let map = surface.map().map(|(heights, as_read)| MapHeights::InCell { heights, as_read });
         let waves = surface.wave_file().map(AsRef::as_ref);
         let (flow, warnings, origin) = (self.flow.as_ref(), &self.warnings[..], surface.origin.as_ref());
-        ResultFiles { surface: &surface.keys, map, waves, contact, solution: &self.solution, flow, warnings, origin }
+        let (solution, residual) = (&self.solution, self.residual.as_ref());
+        ResultFiles { surface: &surface.keys, map, waves, contact, solution, residual, flow, warnings, origin }
     }
 }
 

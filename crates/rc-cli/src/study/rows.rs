@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use rc_core::PeriodicCell;
-use rc_solver::Solution;
+use rc_solver::{Feature, Solution};
 use rc_sweep::memory::Budget;
 use rc_sweep::{ControlKind, FileMark, PlannedSurface, SweepPlan, SweepRow};
 use serde_json::json;
@@ -12,6 +12,7 @@ use serde_json::json;
 use super::pictures;
 use super::variants::Variant;
 use crate::error::CliError;
+use crate::scene::features;
 use crate::scene::keys::ContactKeys;
 use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve::{self, ContactSetup};
@@ -121,6 +122,7 @@ impl StudyRows {
         cell: PeriodicCell,
     ) -> Result<ContactSetup, CliError> {
         let keys = ContactKeys { pressure: Some(pressure), boundary: variant.boundary, ..contact.clone() };
+        features::check(&keys, [Feature::Sweep])?;
         let mut setup = resolve::contact(keys, cell)?;
         // The memory of a machine must not change the digits of a row.
         setup.params.method_follows_memory = false;

@@ -5,13 +5,14 @@ use std::sync::Arc;
 use rc_comm::Ranks;
 use rc_core::{Boundary, Elasticity, Kernel, PeriodicCell, UnitError, Units};
 use rc_kernel::{FreeLove, Layer, Love, LoveLayer, Spectral, SpectralLayer, Viscoelastic};
-use rc_solver::{Control, Feature, SolveParams, Tolerance};
+use rc_solver::{Control, SolveParams, Tolerance};
 
 use super::checks::{missing, positive};
 use super::sliding::SlidingSolid;
 use super::{elastic_layer, sliding};
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
+use crate::scene::history::HistorySpec;
 use crate::scene::keys::{ContactKeys, KernelName};
 use crate::scene::values::ToleranceSpec;
 use crate::scene::{features, file};
@@ -25,6 +26,10 @@ pub struct ContactSetup {
     pub control: Control,
     /// Maximum pressure in E*; infinite for an elastic contact.
     pub hardness: f64,
+    /// Mean pressures in E* that follow each other; empty for a single load.
+    ///
+    /// `control` is the last of them above 0.
+    pub history: Vec<f64>,
     /// Discretisation.
     pub kernel: KernelName,
     /// The boundary, which is what is beyond the heights.
@@ -111,9 +116,9 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     let units = Units::new(cell, elasticity(&keys)?);
     let control = control(&keys, units)?;
     let hardness = hardness(&keys, (control, units))?;
+    let history = keys.history.iter().flat_map(|HistorySpec(loads)| loads).map(|load| units.pressure(*load)).collect();
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
-    // A single solve has removed a wanted error of the area, and has a check of its own.
-    features::check(&keys, [Feature::Sweep])?;
+    features::check(&keys, [])?;
     let boundary = keys.boundary.unwrap_or_default();
     let layer = elastic_layer::layer(&keys, cell.side())?;
     let sliding = sliding::solid(&keys)?;
@@ -128,6 +133,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
         units,
         control,
         hardness,
+        history,
         kernel,
         boundary,
         layer,
@@ -141,6 +147,9 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
 }
 
 fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
+    if let Some(HistorySpec(loads)) = &keys.history {
+        return Ok(Control::pascals(last_of_history(keys, loads)?, units));
+    }
     match (keys.pressure, keys.penetration, keys.force) {
         (Some(pressure), None, None) => Ok(Control::pascals(positive("pressure", "Pa", Some(pressure))?, units)),
         (None, Some(depth), None) => Ok(Control::metres(positive("penetration", "m", Some(depth))?, units)),
@@ -150,6 +159,25 @@ fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
         }
         _ => Err(CliError::input("give exactly one of pressure (Pa), penetration (m) and force (N)")),
     }
+}
+
+/// The last load (Pa) of a history that is above 0.
+fn last_of_history(keys: &ContactKeys, loads: &[f64]) -> Result<f64, CliError> {
+    if keys.n_loads() > 1 {
+        return Err(CliError::input("history: has the loads; omit pressure, penetration and force"));
+    }
+    if keys.hardness.is_none() {
+        return Err(CliError::input(
+            "history: an elastic contact keeps nothing of earlier loads; give hardness too, or pressure instead",
+        ));
+    }
+    if let Some(wrong) = loads.iter().find(|load| !(**load >= 0.0 && load.is_finite())) {
+        return Err(CliError::input(format_args!(
+            "history: each load must be finite and at least 0 (Pa), not {wrong}"
+        )));
+    }
+    let last = loads.iter().rev().copied().find(|load| *load > 0.0);
+    last.ok_or_else(|| CliError::input("history: one of the loads must be above 0 (Pa), such as 1e7,0"))
 }
 
 /// The mean pressure (Pa) of a force (N) on a cell or patch.
@@ -182,8 +210,9 @@ fn film(keys: ContactKeys) -> Result<ContactKeys, CliError> {
 fn hardness(keys: &ContactKeys, (control, units): (Control, Units)) -> Result<f64, CliError> {
     let Some(given) = keys.hardness else { return Ok(f64::INFINITY) };
     let given = positive("hardness", "Pa", Some(given))?;
+    let of_history = keys.history.iter().flat_map(|HistorySpec(loads)| loads).copied().reduce(f64::max);
     let pressure = match control {
-        Control::MeanPressure(mean) => Some(keys.pressure.unwrap_or_else(|| units.pascals(mean))),
+        Control::MeanPressure(mean) => Some(of_history.or(keys.pressure).unwrap_or_else(|| units.pascals(mean))),
         Control::Penetration(_) => None,
     };
     if let Some(pressure) = pressure.filter(|pressure| *pressure >= given) {
