@@ -54,6 +54,9 @@ impl<'a> ContactProblem<'a> {
     /// # Errors
     /// [`SolveError`]. [`SolveError::NotConverged`] has the solution of the first load that did not converge.
     /// [`crate::ProblemError`] if no load is above 0, or one is negative or not finite.
+    ///
+    /// # Panics
+    /// Never, because a history without a load above 0 is an error.
     pub fn solve_history(
         self,
         loads: &[f64],
