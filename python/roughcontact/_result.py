@@ -308,6 +308,11 @@ class Result:
         """Estimated error of ``conductance``, in its unit."""
         return self.summary.get("conductance_error")
 
+    @property
+    def mean_inverse_gap(self) -> float | None:
+        """Mean of 1/(gap + ``jump_distance``) over the nominal area (1/m). None without ``jump_distance``."""
+        return self.summary.get("mean_inverse_gap")
+
     @cached_property
     def displacement(self) -> Floats:
         """Displacement v of the elastic surface (m), shape (ny, nx), positive away from the rough surface, read-only.

@@ -94,6 +94,7 @@ def solve(
     relaxation_time: Quantity | None = None,
     fractional: Fractional | None = None,
     conductivity: Conductivity | None = None,
+    jump_distance: Quantity | None = None,
     kernel: Kernel | None = None,
     boundary: Boundary | None = None,
     layer_thickness: Quantity | None = None,
@@ -170,6 +171,8 @@ def solve(
         Instead of ``prony``: a fractional Zener solid, ``{"alpha": 0.2, "glassy_ratio": 10, "tau": 1e-3}``.
     conductivity : float, (float, float) or str, optional
         Electrical (S/m) or thermal (W/(m K)) conductivity of both bodies, or of each, for :attr:`Result.conductance`.
+    jump_distance : float or str, optional
+        Jump distance (m) of a gas in the gap, for :attr:`Result.mean_inverse_gap`.
     kernel : {"love", "spectral"} or callable, default "love"
         Discretisation of the half-space. A function ``f(kx, ky)`` of two arrays of wavenumbers (rad/m) returns the
         displacement (m) of a pressure wave of 1 Pa, which is ``2 / (E* |k|)`` for a half-space. The displacement must be

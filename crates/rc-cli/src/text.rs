@@ -55,6 +55,10 @@ pub(crate) fn solved_lines(
         ("elastic energy", engineering(s.elastic_energy, "J")),
         ("certificate", certificate_line(s)),
     ];
+    if let Some(value) = s.mean_inverse_gap {
+        let text = format!("{} 1/m times the conductivity of the gas", digits(value, 4));
+        lines.insert(10, ("conductance of gas", text));
+    }
     if let Some(friction) = friction(s) {
         lines.insert(4, ("friction", friction));
         lines.splice(4..4, sliding.map(|sliding| ("sliding", sliding)));

@@ -115,6 +115,9 @@ pub struct Summary {
     /// Estimated error of `conductance`, in its unit.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
     pub conductance_error: Option<Option<f64>>,
+    /// ⟨1/(g + m)⟩ over the nominal area (1/m), with the gap g and the given jump distance m of a gas.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_inverse_gap: Option<f64>,
     /// Friction of a surface that slides. Its keys exist only with a speed, and are 0 at the speed 0.
     #[serde(flatten)]
     pub friction: Option<FrictionSummary>,
@@ -213,6 +216,8 @@ pub struct SolveContext {
     pub threads: usize,
     /// Harmonic mean of the conductivities of the bodies, if they are given.
     pub conductivity: Option<f64>,
+    /// Jump distance (m) of the gas in the gap, if it is given.
+    pub jump_distance: Option<f64>,
     /// Whether a speed is given, which may be 0.
     pub slides: bool,
 }
@@ -286,6 +291,10 @@ impl Summary {
             contact_conductance_error: of_spots[1],
             conductance: context.conductivity.map(|of_bodies| of_spots[0].map(|per_unit| per_unit * of_bodies)),
             conductance_error: context.conductivity.map(|of_bodies| of_spots[1].map(|error| error * of_bodies)),
+            mean_inverse_gap: context.jump_distance.map(|jump| {
+                // It is in 1/λ.
+                solution.mean_inverse_gap(units.length(jump)) / units.metres(1.0)
+            }),
             friction: context.slides.then(|| FrictionSummary::of(solution, units)),
             least_pressure_rise: None,
             elastic_energy: units.joules(observables.elastic_energy),

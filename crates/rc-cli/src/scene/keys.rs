@@ -272,6 +272,12 @@ pub struct ContactKeys {
     #[arg(long, value_name = "K1[,K2]", help_heading = help::PHYSICS, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub conductivity: Option<Conductivity>,
+    /// Jump distance m (m) of a gas in the gap g: adds the mean of 1/(g + m)
+    ///
+    /// Its product with the conductivity of the gas is the conductance of the gas.
+    #[arg(long, value_name = "M", help_heading = help::PHYSICS, hide_short_help = true, value_parser = length::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
+    pub jump_distance: Option<f64>,
     /// love (the paper's loaded square) or spectral [default: love]
     ///
     /// love: pressure constant on each element, displacement at its centre (Eq. 5). spectral: the symbol 2/(E* q), as

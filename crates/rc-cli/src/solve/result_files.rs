@@ -85,6 +85,7 @@ impl ResultFiles<'_> {
             wall,
             threads,
             conductivity: self.contact.keys.conductivity.map(Conductivity::mean),
+            jump_distance: self.contact.keys.jump_distance,
             slides: self.contact.sliding.is_some(),
         };
         let leakage = self.flow.map(|flow| flow.summary.clone());

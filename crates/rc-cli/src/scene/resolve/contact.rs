@@ -116,6 +116,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     let units = Units::new(cell, elasticity(&keys)?);
     let control = control(&keys, units)?;
     let hardness = hardness(&keys, (control, units))?;
+    keys.jump_distance.map_or(Ok(0.0), |jump| positive("jump_distance", "m", Some(jump)))?;
     let history = keys.history.iter().flat_map(|HistorySpec(loads)| loads).map(|load| units.pressure(*load)).collect();
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
     features::check(&keys, [])?;
@@ -316,6 +317,8 @@ mod tests {
             ("tolerance = 1.0", "tolerance"),
             ("tolerance = 0.0", "tolerance"),
             ("hardness = 0.0", "hardness"),
+            ("jump_distance = 0.0", "jump_distance"),
+            ("jump_distance = nan", "jump_distance"),
             ("hardness = nan", "hardness"),
             ("hardness = inf", "hardness"),
             ("hardness = 1.0", "hardness"),
