@@ -99,6 +99,8 @@ def solve(
     boundary: Boundary | None = None,
     layer_thickness: Quantity | None = None,
     layer_poisson: float | None = None,
+    substrate_young: Quantity | None = None,
+    substrate_poisson: float | None = None,
     method: Method | None = None,
     border_level: int | None = None,
     energy_tolerance: float | None = None,
@@ -186,7 +188,10 @@ def solve(
         is the displacement of a rigid body since first touch. Only the kernel love has free borders.
     layer_thickness, layer_poisson : float, optional
         An elastic layer of this thickness (m), bonded to a rigid base, instead of the half-space. ``layer_poisson``
-        is Poisson's ratio of the layer. Default: ``poisson``. With ``e_star`` it must be given. Only the uniform method solves layers.
+        is Poisson's ratio of the layer. Default: ``poisson``. With ``e_star`` it must be given.
+    substrate_young, substrate_poisson : float, optional
+        Young's modulus (Pa) and Poisson's ratio of an elastic half-space below the layer, instead of the rigid base. The layer
+        is then a coating.
     method : {"adaptive", "uniform", "gauss-seidel"}, optional
         How the problem is solved. Default: adaptive, or uniform where that is cheaper.
     border_level : int, default 0

@@ -112,6 +112,8 @@ def sweep(
     boundary: Boundary | None = None,
     layer_thickness: Quantity | None = None,
     layer_poisson: float | None = None,
+    substrate_young: Quantity | None = None,
+    substrate_poisson: float | None = None,
     method: Method | None = None,
     border_level: int | None = None,
     energy_tolerance: float | None = None,

@@ -28,7 +28,7 @@ impl Scene {
         let normalisation = Normalisation::RmsHeight(0.01);
         let params = SpectrumParams { hurst, normalisation, ..SpectrumParams::paper(waves, index as u64) };
         let surface = Surface::new(&params).expect("a surface");
-        let layer = Layer { thickness: between(2, 0.05, 0.5), poisson: 0.3 };
+        let layer = Layer::on_rigid_base(between(2, 0.05, 0.5), 0.3);
         let kernel: Box<dyn Kernel + Sync> = match index % 5 {
             0 => Box::new(Love),
             1 => Box::new(Spectral),

@@ -244,7 +244,7 @@ fn strongly_damped_solids_converge() {
 fn a_given_penetration_a_hardness_and_a_layer_slide_too() {
     let heights = rough(5, 128);
     let (material, velocity) = one_mode(10.0, 0.05);
-    let layer = Layer { thickness: 0.1, poisson: 0.48 };
+    let layer = Layer::on_rigid_base(0.1, 0.48);
     let solids: [Box<dyn Kernel>; 2] = [
         Box::new(Viscoelastic::new(Love, &material, velocity)),
         Box::new(Viscoelastic::new(LoveLayer(layer), &material, velocity)),
@@ -263,7 +263,7 @@ fn a_given_penetration_a_hardness_and_a_layer_slide_too() {
         assert!(friction(&hard).coefficient > 0.0);
     }
     // A layer is stiffer, so less of it touches.
-    let thin = LoveLayer(Layer { thickness: 0.01, poisson: 0.3 });
+    let thin = LoveLayer(Layer::on_rigid_base(0.01, 0.3));
     let areas =
         [&Viscoelastic::new(Love, &material, velocity) as &dyn Kernel, &Viscoelastic::new(thin, &material, velocity)]
             .map(|kernel| solved(&heights, kernel, 2e-3, 0.0).area().fraction);

@@ -8,7 +8,8 @@
 /// Fourier transform. There the symbol at the angular wavenumber q (in rad/λ) is 2/q plus [`SplitByScale::deviation`],
 /// in λ/E*.
 ///
-/// `rc_kernel::HalfSpace` is the split of the half-space. All three methods return zero for it.
+/// `rc_kernel::HalfSpace` is the split of the half-space. All three methods return zero for it. `rc_kernel::Layer` is that
+/// of a layer or a coating. A uniform pressure adds [`Kernel::uniform_displacement`](crate::Kernel::uniform_displacement).
 ///
 /// # What a solve checks
 /// The adaptive method computes with this object, not with [`Kernel::symbol`](crate::Kernel::symbol). Before a solve,
@@ -21,8 +22,9 @@ pub trait SplitByScale: Sync {
 
     /// The angular wavenumber from which on the deviation is at most `tolerance` times 2/q.
     ///
-    /// The base grid must resolve all waves below it. Otherwise the adaptive method does not solve the problem. It does
-    /// not solve problems with free borders either, unless the value is zero.
+    /// The base grid must resolve all waves below it, for a tolerance of 2e-6. Otherwise the adaptive method does not
+    /// solve the problem. Smaller deviations that it does not resolve count as an error of the operator. Problems with
+    /// free borders are not solved, unless the value is zero.
     fn deviates_below(&self, tolerance: f64) -> f64;
 
     /// Bound of the second derivatives, along the axes, of the displacement that the deviation adds.

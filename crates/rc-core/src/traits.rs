@@ -235,8 +235,7 @@ pub trait Kernel: Sync {
     ///
     /// `None` means that the kernel is solved on the uniform grid. A kernel of an isotropic solid has a split if its
     /// elements are Love's squares and short waves see the half-space. Such a kernel can return the split of
-    /// `rc_kernel::Love`, or an object of its own. A kernel with a [`Kernel::uniform_displacement`] is always solved on
-    /// the uniform grid.
+    /// `rc_kernel::Love`, or an object of its own.
     fn split(&self) -> Option<&dyn SplitByScale> {
         None
     }

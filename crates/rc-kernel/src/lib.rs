@@ -42,6 +42,7 @@ mod averages;
 mod bessel;
 mod chebyshev;
 mod creep;
+mod curvature;
 mod error;
 mod free_love;
 mod gauss_legendre;
@@ -69,7 +70,7 @@ pub use free_love::FreeLove;
 pub use half_space::HalfSpace;
 pub use lattice::{LATTICE_CONSTANT, ewald_coefficient, ewald_phi};
 
-pub use layer::{Layer, LoveLayer, SpectralLayer, THINNEST_LAYER};
+pub use layer::{Layer, LoveLayer, SpectralLayer, Substrate, THINNEST_LAYER};
 pub use love::{love_displacement, love_rectangle_displacement};
 pub use periodic::{PeriodicLove, PeriodicSource};
 pub use relaxation::{MaterialError, Relaxation};

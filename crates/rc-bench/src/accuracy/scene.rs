@@ -275,7 +275,7 @@ impl Scene {
         let [low, high] = [[0.3, 0.7], [0.7, 1.5], [1.5, 4.0], [4.0, 30.0]][turn % 4];
         let size = random.log_between(low, high);
         let poisson = random.choose(&[0.0, 0.2, 0.3, 0.4, 0.45]);
-        let layer = Layer { thickness: size / (waves * elements) as f64, poisson };
+        let layer = Layer::on_rigid_base(size / (waves * elements) as f64, poisson);
         // A thin layer is stiffer.
         let stiffer = (1.0 + elements as f64 / (3.0 * size)).min(10.0);
         let solid = Solid::Layer { layer, spectral: (turn / 4).is_multiple_of(2) };

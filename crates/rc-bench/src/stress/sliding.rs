@@ -241,7 +241,11 @@ fn others() -> Result<Vec<Scene>> {
     let (heights, material) = (surface()?, Relaxation::prony(&[[4.0, 0.1], [50.0, 1.0]])?);
     let scene = |name: &str| Scene::new(name, &heights, &material, 0.05);
     let layer = |name: &str, thickness: f64, poisson: f64| {
-        scene(name).of(Viscoelastic::new(LoveLayer(Layer { thickness, poisson }), &material, DVec2::new(0.05, 0.0)))
+        scene(name).of(Viscoelastic::new(
+            LoveLayer(Layer { thickness, poisson, substrate: None }),
+            &material,
+            DVec2::new(0.05, 0.0),
+        ))
     };
     let oblique = |name: &str, velocity: DVec2| scene(name).of(Viscoelastic::new(Spectral, &material, velocity));
     let line = Field::from_fn(Grid::new(1024, 1)?, |at| 1e-3 * ((TAU * at.x).cos() + 0.3 * (7.0 * TAU * at.x).sin()));

@@ -10,7 +10,7 @@ use super::columns::{self, PRESSURE, Quantity, SWEPT};
 use crate::error::CliError;
 
 /// Units of keys that may be varied.
-const UNITS: [(&str, &str); 18] = [
+const UNITS: [(&str, &str); 19] = [
     ("pressure", "Pa"),
     ("penetration", "m"),
     ("speed", "m/s"),
@@ -26,6 +26,7 @@ const UNITS: [(&str, &str); 18] = [
     ("cell_y", "m"),
     ("rms", "m"),
     ("layer_thickness", "m"),
+    ("substrate_young", "Pa"),
     ("radius", "m"),
     ("wavelength", "m"),
     ("wave_amplitude", "m"),

@@ -154,7 +154,15 @@ fn subtitle(scene: &Scene, result: &ResultFolder) -> String {
     let s = &result.summary;
     let place = match (scene.contact.boundary, scene.contact.layer_thickness) {
         (Some(Boundary::Free), _) => "on a free patch of".to_owned(),
-        (_, Some(thickness)) => format!("on a layer of {}, in a cell of", engineering(thickness, "m")),
+        (_, Some(thickness)) => {
+            let of = engineering(thickness, "m");
+            match scene.contact.substrate_young {
+                Some(young) => {
+                    format!("on a coating of {of} (substrate E = {}), in a cell of", engineering(young, "Pa"))
+                }
+                None => format!("on a layer of {of}, in a cell of"),
+            }
+        }
         _ if result.is_line() => "periodic with".to_owned(),
         _ => "in a cell of".to_owned(),
     };

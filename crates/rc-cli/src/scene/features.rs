@@ -12,6 +12,7 @@ pub(crate) fn of_contact(keys: &ContactKeys) -> Vec<Feature> {
         (Feature::Spectral, keys.kernel == Some(KernelName::Spectral)),
         (Feature::KernelFunction, keys.kernel == Some(KernelName::Own)),
         (Feature::Layer, keys.layer_thickness.is_some()),
+        (Feature::Coating, keys.substrate_young.is_some()),
         (Feature::FreeBorders, keys.boundary == Some(Boundary::Free)),
         (Feature::Penetration, keys.penetration.is_some()),
         (Feature::Hardness, keys.hardness.is_some()),

@@ -290,7 +290,7 @@ pub struct ContactKeys {
     #[arg(long, value_name = "NAME", help_heading = help::PHYSICS, value_parser = boundaries(), hide_possible_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boundary: Option<Boundary>,
-    /// Elastic layer of this thickness (m), bonded to a rigid base
+    /// Elastic layer or coating of this thickness (m), bonded to a rigid base
     #[arg(long, value_name = "M", help_heading = help::PHYSICS, value_parser = length::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
     pub layer_thickness: Option<f64>,
@@ -298,6 +298,14 @@ pub struct ContactKeys {
     #[arg(long, hide_short_help = true, value_name = "NU", help_heading = help::PHYSICS, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layer_poisson: Option<f64>,
+    /// Elastic substrate below the layer, instead of a rigid base: Young's modulus (Pa)
+    #[arg(long, hide_short_help = true, value_name = "PA", help_heading = help::PHYSICS, value_parser = pressure::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "pressure::read", skip_serializing_if = "Option::is_none")]
+    pub substrate_young: Option<f64>,
+    /// Poisson's ratio of the substrate
+    #[arg(long, hide_short_help = true, value_name = "NU", help_heading = help::PHYSICS, allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub substrate_poisson: Option<f64>,
     /// adaptive, uniform or gauss-seidel [default: cheaper of the first two]
     ///
     /// adaptive: on elements that follow the contact; work and memory grow with the contact area (kernel love, square

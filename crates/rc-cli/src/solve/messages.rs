@@ -22,7 +22,7 @@ pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &Conta
             tolerance_key(contact),
             contact.params.tolerance.bound(surface.source().elements_per_wave()).value()
         )),
-        SolveError::Adaptive(error) => of_adaptive(error, budget),
+        SolveError::Adaptive(error) => of_adaptive(error, contact, budget),
         SolveError::GaussSeidel(error) => CliError::input(format_args!("method gauss-seidel: {error}")),
         SolveError::Memory { method, grid, .. } => match budget.check_grid(&format!("the {method} method"), *grid) {
             Err(refused) => refused.into(),
@@ -92,8 +92,15 @@ fn of_problem(error: &ProblemError, contact: &ContactSetup) -> CliError {
     }
 }
 
-fn of_adaptive(error: &AdaptiveError, budget: Budget) -> CliError {
+fn of_adaptive(error: &AdaptiveError, contact: &ContactSetup, budget: Budget) -> CliError {
     match error {
+        AdaptiveError::Deviation { deviates_below, resolved, .. } if contact.layer.is_some() => {
+            let thickness = contact.keys.layer_thickness.unwrap_or(f64::NAN);
+            CliError::input(format_args!(
+                "layer_thickness: {thickness:e} m is too thin for the base grid of the adaptive method; give at least {:e} m, or --method uniform",
+                rounded_up(thickness * deviates_below / resolved)
+            ))
+        }
         AdaptiveError::Grid { .. } | AdaptiveError::Base { .. } => {
             CliError::input(format_args!("grid: {error}; --method uniform takes any grid"))
         }

@@ -33,7 +33,8 @@ fn a_layer_is_compressed_by_the_mean_pressure() {
     let small = ["--waves", "8", "--grid", "128", "--pressure", "4e5"];
     let on_half_space = summary(&place, &[&small[..], &["--method", "uniform"]].concat());
     let on_layer = summary(&place, &[&small[..], &LAYER, &["--out", "layer"]].concat());
-    assert_eq!(on_layer["method_reason"], "uniform: a layer has no adaptive form");
+    let reason = on_layer["method_reason"].as_str().expect("a reason");
+    assert!(reason.starts_with("uniform: the base grid of the adaptive method is too coarse"), "{reason}");
     assert!(number(&on_layer, "area_fraction") < number(&on_half_space, "area_fraction"), "a layer is stiffer");
     // This is uniaxial compression with the example's 0.4 GPa and 0.45.
     let compressed = 4e5 * 3e-4 * (1.45 * 0.1) / (0.55 * 0.4e9);
@@ -164,6 +165,83 @@ fn layers_and_patches_have_a_hardness() {
     }
     let soft = place.run(&[&["solve"], &patch[..], &["--hardness", "1e6"]].concat());
     assert_refused(&soft, "hardness: 1000000 Pa cannot bear a mean pressure of 2000000 Pa");
+}
+
+#[test]
+fn both_methods_solve_a_layer_that_the_base_grid_resolves() {
+    let place = place();
+    let words = ["--waves", "16", "--grid", "256", "--pressure", "4e5", "--energy-tolerance", "1e-3"];
+    let of = |method| summary(&place, &[&words[..], &["--layer-thickness", "1.25e-3", "--method", method]].concat());
+    let [adaptive, uniform] = [of("adaptive"), of("uniform")];
+    assert_close("area", number(&adaptive, "area_fraction"), number(&uniform, "area_fraction"), 3e-4);
+    assert_close("penetration", number(&adaptive, "penetration"), number(&uniform, "penetration"), 1e-4);
+    let thin = [&["solve"], &words[..6], &["--layer-thickness", "2e-4", "--method", "adaptive"]].concat();
+    assert_refused(
+        &place.run(&thin),
+        "layer_thickness: 2e-4 m is too thin for the base grid of the adaptive method; give at least 4e-4 m, or --method uniform",
+    );
+    let thick_enough = [&["solve", "--quiet"], &words[..6], &["--layer-thickness", "4e-4", "--method", "adaptive"]];
+    assert_solved(&place.run(&thick_enough.concat()));
+}
+
+#[test]
+fn a_coating_is_the_half_space_or_a_layer_in_its_limits() {
+    let place = place();
+    let words = ["--waves", "8", "--grid", "128", "--young", "4e8", "--poisson", "0.45", "--pressure", "4e5"];
+    let uniform = ["--method", "uniform", "--energy-tolerance", "1e-4"];
+    let rms = |more: &[&str]| number(&summary(&place, &[&words[..], &uniform, more].concat()), "rms_pressure");
+    let coated =
+        |young, poisson| ["--layer-thickness", "1e-3", "--substrate-young", young, "--substrate-poisson", poisson];
+    assert_close("one material", rms(&coated("4e8", "0.45")), rms(&[]), 1e-5);
+    assert_close("a stiff substrate", rms(&coated("4e14", "0.3")), rms(&["--layer-thickness", "1e-3"]), 1e-3);
+    let soft = [&words[..], &coated("4MPa", "0.3"), &["--out", "soft"]].concat();
+    let found = summary(&place, &soft);
+    let scene = text(&place.bytes("soft/scene.toml"));
+    assert!(scene.contains("substrate_young = 4000000.0") && scene.contains("substrate_poisson = 0.3"), "{scene}");
+    assert_solved(&place.run(&["solve", "soft/scene.toml", "--out", "again", "--quiet"]));
+    assert!(place.bytes("soft/pressure.npy") == place.bytes("again/pressure.npy"));
+    assert!(number(&found, "rms_pressure") < rms(&[]), "a soft substrate spreads the load");
+    assert_solved(&place.run(&["report", "soft"]));
+}
+
+#[test]
+fn a_bad_coating_is_refused_in_one_line() {
+    let place = place();
+    let on = ["--layer-thickness", "1e-3"];
+    for (layer, more, expected) in [
+        (false, "--substrate-young 1e9 --substrate-poisson 0.3", "substrate_young: is given without layer_thickness"),
+        (true, "--substrate-young 1e9", "substrate_poisson: is missing"),
+        (true, "--substrate-poisson 0.3", "substrate_young: is missing"),
+        (true, "--substrate-young 1e9 --substrate-poisson 0.51", "substrate_poisson: must be from 0 to 0.5, not 0.51"),
+        (true, "--substrate-young 1e9 --substrate-poisson -0.1", "substrate_poisson: must be from 0 to 0.5, not -0.1"),
+        (true, "--substrate-young 0 --substrate-poisson 0.3", "substrate_young: must be positive"),
+        (true, "--substrate-young -1 --substrate-poisson 0.3", "substrate_young: must be positive"),
+        (true, "--substrate-young 1e9 --substrate-poisson 0.3 --boundary free", "boundary: free borders cannot be"),
+        (
+            true,
+            "--substrate-young 1e9 --substrate-poisson 0.3 --young2 1e9 --poisson2 0.3",
+            "young2: a layer is pressed",
+        ),
+        (
+            true,
+            "--substrate-young 1e9 --substrate-poisson 0.3 --speed 1 --glassy-ratio 9 --relaxation-time 1e-3",
+            "speed: a sliding surface cannot be combined with a coating on an elastic substrate",
+        ),
+        (
+            true,
+            "--substrate-young 1e9 --substrate-poisson 0.3 --method gauss-seidel",
+            "method: the method gauss-seidel cannot be combined with an elastic layer",
+        ),
+    ] {
+        let words: Vec<&str> = more.split(' ').collect();
+        let layer = if layer { &on[..] } else { &[] };
+        let small = ["solve", "--waves", "8", "--grid", "128", "--pressure", "1e5"];
+        assert_refused(&place.run(&[&small[..], layer, &words].concat()), expected);
+    }
+    let times = ["sweep", "--waves", "8", "--grid", "128", "--pressures", "1e5", "--times", "1,2", "--out", "creep"];
+    let rubber =
+        ["--glassy-ratio", "9", "--relaxation-time", "1", "--substrate-young", "1e9", "--substrate-poisson", "0"];
+    assert_refused(&place.run(&[&times[..], &on, &rubber].concat()), "times: a coating creeps");
 }
 
 /// A layer has a flow as a half-space has, but no conductance.

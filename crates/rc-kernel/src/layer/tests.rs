@@ -1,77 +1,174 @@
 //! Tests of the factor of a layer, its limits, and its kernels.
 //!
-//! The factor is compared with the equations of elasticity.
+//! The factor is compared with the equations of elasticity, solved by transfer matrices.
 
 use rc_core::testing::check_kernel;
 
+use super::double::Double;
 use super::*;
 
 const RATIOS: [f64; 6] = [-0.5, 0.0, 0.3, 0.45, 0.499, 0.5];
 
 fn layer(thickness: f64, poisson: f64) -> Layer {
-    Layer { thickness, poisson }
+    Layer::on_rigid_base(thickness, poisson)
 }
 
-/// Displacement u_z of the surface of a layer under the pressure cos(q x).
+fn coating(thickness: f64, poisson: f64, substrate: Substrate) -> Layer {
+    Layer { substrate: Some(substrate), ..layer(thickness, poisson) }
+}
+
+type Matrix = [[Double; 4]; 4];
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| (0..4).fold(Double::ZERO, |sum, k| sum + a[i][k] * b[k][j])))
+}
+
+fn unit(value: f64) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { value.into() } else { Double::ZERO }))
+}
+
+fn sum(a: &Matrix, b: &Matrix) -> Matrix {
+    std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] + b[i][j]))
+}
+
+/// The equations of plane strain for waves with q = 1, as d/dz of the state (U, W, T, S).
 ///
-/// It follows from the equations of elasticity. The layer has thickness 1 and E* = 1. The two potentials of Papkovich
-/// and Neuber in plane strain have four constants, which follow from four conditions.
-fn of_boundary_values(q: f64, poisson: f64) -> f64 {
-    let shear = 0.5 * (1.0 - poisson);
-    let kappa = 3.0 - 4.0 * poisson;
-    // 2G u_x = sin(qx) (-q F - q z P), 2G u_z = cos(qx) (F' + z P' - κ P). F and P consist of exp(±q(z - 1/2)), and z
-    // increases from the base upwards.
-    let potentials = |z: f64| {
-        let [up, down] = [(q * (z - 0.5)).exp(), (-q * (z - 0.5)).exp()];
-        [[up, q * up, q * q * up], [down, -q * down, q * q * down]]
-    };
-    // Rows are the coefficients of the two waves of F and of the two waves of P.
-    let row = |of_f: &dyn Fn([f64; 3]) -> f64, of_p: &dyn Fn([f64; 3]) -> f64, z: f64| {
-        let [up, down] = potentials(z);
-        [of_f(up), of_f(down), of_p(up), of_p(down)]
-    };
-    let along = |z: f64| row(&|[f, ..]| -q * f, &|[p, ..]| -q * z * p, z);
-    let across = |z: f64| row(&|[_, f, _]| f, &|[p, slope, _]| z * slope - kappa * p, z);
-    // σ_zz = cos(qx) (F'' + z P'' - 2(1-ν) P'), σ_xz = -q sin(qx) (F' + z P' - (1-2ν) P).
-    let normal = row(&|[.., f]| f, &|[_, slope, bend]| bend - 2.0 * (1.0 - poisson) * slope, 1.0);
-    let tangential = row(&|[_, f, _]| -q * f, &|[p, slope, _]| -q * (slope - (1.0 - 2.0 * poisson) * p), 1.0);
-    let constants = eliminate([along(0.0), across(0.0), normal, tangential], [0.0, 0.0, -1.0, 0.0]);
-    let lifted: f64 = across(1.0).iter().zip(constants).map(|(a, c)| a * c).sum();
-    -lifted / (2.0 * shear)
+/// u_x = U sin x, u_z = W cos x, σ_xz = T sin x, σ_zz = S cos x: Hooke's law and equilibrium.
+fn equations(shear: f64, poisson: f64) -> Matrix {
+    let (one, nu) = (Double::from(1.0), Double::from(poisson));
+    let rest = one - nu;
+    let shear = Double::from(shear);
+    // The ratio of λ to λ + 2G, and the reciprocal of the latter.
+    let (ratio, softness) = (nu / rest, (one - nu - nu) / ((shear + shear) * rest));
+    let zero = Double::ZERO;
+    [
+        [zero, one, one / shear, zero],
+        [zero - ratio, zero, zero, softness],
+        [(shear + shear) / rest, zero, zero, ratio],
+        [zero, zero, zero - one, zero],
+    ]
 }
 
-/// Gaussian elimination with pivots.
-fn eliminate(mut matrix: [[f64; 4]; 4], mut right: [f64; 4]) -> [f64; 4] {
-    for i in 0..4 {
-        let pivot = (i..4).max_by(|&a, &b| matrix[a][i].abs().total_cmp(&matrix[b][i].abs())).expect("rows");
-        matrix.swap(i, pivot);
-        right.swap(i, pivot);
-        for row in i + 1..4 {
-            let factor = matrix[row][i] / matrix[i][i];
-            let pivot_row = matrix[i];
-            for (value, pivot) in matrix[row].iter_mut().zip(pivot_row).skip(i) {
-                *value -= factor * pivot;
+/// The state at the top of a layer of this thickness as a matrix times that at its bottom: exp(A d).
+fn transfer(equations: &Matrix, thickness: f64) -> Matrix {
+    const HALVINGS: i32 = 12;
+    let step = Double::from(thickness * 0.5_f64.powi(HALVINGS));
+    let step: Matrix = equations.map(|row| row.map(|value| value * step));
+    let mut transfer = unit(1.0);
+    for n in (1..=16).rev() {
+        let part = product(&step, &transfer).map(|row| row.map(|value| value / Double::from(f64::from(n))));
+        transfer = sum(&unit(1.0), &part);
+    }
+    (0..HALVINGS).fold(transfer, |transfer, _| product(&transfer, &transfer))
+}
+
+/// 2 M/ξ, the displacement of the surface of a layer with E* = 1 under the pressure cos x, where d = ξ.
+///
+/// Two states at the bottom are possible: no displacement on a rigid base, waves that decay downwards on an elastic
+/// one. The stresses at the surface choose the sum of them.
+fn displacement(layer: Layer) -> f64 {
+    let bottom = match layer.substrate {
+        None => unit(1.0),
+        Some(Substrate { modulus, poisson }) => {
+            let equations = equations(0.5 * (1.0 - poisson) * modulus, poisson);
+            // All waves are combinations of (1 + z) exp(±z). This removes those that grow downwards.
+            let rising = sum(&equations, &unit(1.0));
+            product(&rising, &rising)
+        }
+    };
+    let states = product(&transfer(&equations(0.5 * (1.0 - layer.poisson), layer.poisson), layer.thickness), &bottom);
+    let [first, second] = [2, 3];
+    let [[t, also_t], [s, also_s], [w, also_w]] = [2, 3, 1].map(|row: usize| [states[row][first], states[row][second]]);
+    // T = 0 and S = -1.
+    let determinant = t * also_s - also_t * s;
+    let lifted = (also_t * w - t * also_w) / determinant;
+    -lifted.0
+}
+
+/// For long waves, a rigid base or a ratio of moduli of 1e6, the reference loses up to 18 of its 31 digits.
+#[test]
+fn the_factor_is_that_of_transfer_matrices() {
+    let mut n = 0;
+    let mut assert_same = |layer: Layer| {
+        let (found, expected) = (2.0 * layer.factor(layer.thickness), displacement(layer));
+        let error = (found / expected - 1.0).abs();
+        assert!(error < 1e-12, "{layer:?}: {found} for {expected}, off by {error:e}");
+        n += 1;
+    };
+    for poisson in RATIOS {
+        for xi in [1e-3, 0.01, 0.05, 0.3, 0.499, 0.5, 0.8, 1.0, 2.0, 5.0, 15.0] {
+            assert_same(layer(xi, poisson));
+            for exponent in -6..=6 {
+                for of_substrate in RATIOS {
+                    let modulus = 1.3 * 10.0_f64.powi(exponent);
+                    assert_same(coating(xi, poisson, Substrate { modulus, poisson: of_substrate }));
+                }
             }
-            right[row] -= factor * right[i];
         }
     }
-    let mut solved = [0.0; 4];
-    for i in (0..4).rev() {
-        let known: f64 = (i + 1..4).map(|column| matrix[i][column] * solved[column]).sum();
-        solved[i] = (right[i] - known) / matrix[i][i];
-    }
-    solved
+    assert!(n > 5000, "{n} layers");
 }
 
 #[test]
-fn the_factor_solves_the_equations_of_the_layer() {
-    for poisson in RATIOS {
-        for xi in [0.05, 0.3, 0.49, 0.51, 1.0, 2.0, 5.0] {
-            let (found, expected) = (2.0 / xi * layer(1.0, poisson).factor(xi), of_boundary_values(xi, poisson));
-            // Elimination loses digits for long waves, whose displacement is small.
-            let error = (found / expected - 1.0).abs();
-            assert!(error < 1e-9, "ν = {poisson}, ξ = {xi}: {found} for {expected}, off by {error:e}");
+fn a_coating_is_its_substrate_for_long_waves_and_its_material_for_short_ones() {
+    for (poisson, of_substrate) in [(0.3, 0.3), (0.5, 0.0), (0.2, 0.45)] {
+        for modulus in [1e-6, 0.1, 1.0, 7.0, 1e6] {
+            let layer = coating(1.0, poisson, Substrate { modulus, poisson: of_substrate });
+            let long = layer.factor(1e-9) * modulus;
+            assert!((long - 1.0).abs() < 1e-2, "{layer:?}: {long}");
+            assert!((layer.factor(0.0) * modulus - 1.0).abs() < 1e-14 && (layer.factor(30.0) - 1.0).abs() < 1e-14);
+            assert_eq!(layer.uniform_displacement(), None);
         }
+        let stiff = coating(1.0, poisson, Substrate { modulus: 1e12, poisson: of_substrate });
+        let same = coating(1.0, poisson, Substrate { modulus: 1.0, poisson });
+        for xi in [0.05, 0.3, 1.0, 4.0] {
+            let [stiff, rigid] = [stiff, layer(1.0, poisson)].map(|layer| layer.factor(xi));
+            assert!((stiff / rigid - 1.0).abs() < 1e-6, "ν = {poisson}, ξ = {xi}: {stiff} and {rigid}");
+            assert!((same.factor(xi) - 1.0).abs() < 1e-15 && same.interface().excess(xi).abs() < 1e-15);
+        }
+        assert_eq!((same.deviates_below(0.0), same.curvature()), (0.0, 0.0));
+    }
+}
+
+/// The deviation is at most the tolerance from the announced wave on, and not far before it.
+#[test]
+fn deviations_end_where_they_are_said_to_end() {
+    let soft = Substrate { modulus: 1e-3, poisson: 0.2 };
+    for layer in [layer(0.2, 0.5), layer(0.2, 0.0), coating(0.2, 0.3, soft)] {
+        for tolerance in [1e-3, 1e-6, 1e-10] {
+            let below = layer.deviates_below(tolerance);
+            let relative = |q: f64| 0.5 * q * layer.deviation(q).abs();
+            assert!((1..100).all(|n| relative(below * (1.0 + 0.03 * f64::from(n))) <= tolerance), "{layer:?}");
+            assert!(relative(0.97 * below) > tolerance, "{layer:?}, {tolerance:e}: {}", relative(0.97 * below));
+        }
+        assert!(layer.deviates_below(0.0).is_finite());
+    }
+}
+
+/// The pressure that bends the surface at the origin most presses where ∂²κ/∂x² is positive.
+///
+/// κ is summed over waves of a cell that is much wider than the layer is thick.
+#[test]
+fn no_pressure_bends_the_surface_more_than_the_bound() {
+    const N: usize = 96;
+    let soft = Substrate { modulus: 0.1, poisson: 0.3 };
+    for layer in [layer(0.05, 0.5), layer(0.05, 0.3), coating(0.05, 0.3, soft)] {
+        let waves: Vec<f64> = (0..N).map(|k| TAU * (if 2 * k < N { k as f64 } else { k as f64 - N as f64 })).collect();
+        let cosines = |i: usize, k: usize| (TAU * ((i * k) % N) as f64 / N as f64).cos();
+        // The transform is separated into both axes. Its value for each k_x and y comes first.
+        let transform = |kx: usize, ky: usize| {
+            let q = waves[kx].hypot(waves[ky]);
+            if q == 0.0 { 0.0 } else { -waves[kx].powi(2) * layer.deviation(q) }
+        };
+        let rows: Vec<Vec<f64>> = (0..N)
+            .map(|kx| (0..N).map(|y| (0..N).map(|ky| transform(kx, ky) * cosines(y, ky)).sum()).collect())
+            .collect();
+        let bent = (0..N).flat_map(|x| {
+            let rows = &rows;
+            (0..N).map(move |y| (0..N).map(|kx| rows[kx][y] * cosines(x, kx)).sum::<f64>().max(0.0))
+        });
+        let (bent, bound) = (bent.sum::<f64>() / (N * N) as f64, layer.curvature());
+        assert!(bent <= bound && bound < 1.6 * bent, "{layer:?}: {bent} for the bound {bound}");
     }
 }
 
@@ -80,13 +177,13 @@ fn the_factor_is_that_of_columns_and_of_the_half_space_in_its_limits() {
     for poisson in RATIOS {
         let layer = layer(1.0, poisson);
         let (thin, xi) = (layer.factor(1e-4), 1e-4);
-        let column = 0.5 * xi * layer.uniform_displacement();
+        let column = 0.5 * xi * layer.uniform_displacement().expect("a base");
         let bent = 2.0 / 3.0 * xi.powi(3);
         let expected = if poisson < 0.5 { column } else { bent };
         assert!((thin / expected - 1.0).abs() < 2e-5, "ν = {poisson}: {thin:e} for {expected:e}");
         assert!((layer.factor(20.0) - 1.0).abs() < 1e-13 && (layer.factor(1e4) - 1.0).abs() < 1e-15, "ν = {poisson}");
         for xi in [0.1, 0.5, 0.7, 3.0, 9.0] {
-            let (excess, difference) = (layer.excess(xi), layer.factor(xi) - 1.0);
+            let (excess, difference) = (layer.interface().excess(xi), layer.factor(xi) - 1.0);
             assert!((excess - difference).abs() < 1e-15, "ν = {poisson}, ξ = {xi}: {excess} and {difference}");
         }
         // The two formulas agree where one replaces the other.
@@ -111,6 +208,9 @@ fn layers_meet_the_contract_of_kernels() {
     for (thickness, poisson) in [(1.0, 0.3), (0.1, 0.5), (0.03, 0.0)] {
         check_kernel(&LoveLayer(layer(thickness, poisson)));
         check_kernel(&SpectralLayer(layer(thickness, poisson)));
+        let substrate = Substrate { modulus: 0.1, poisson: 0.4 };
+        check_kernel(&LoveLayer(coating(thickness, poisson, substrate)));
+        check_kernel(&SpectralLayer(coating(thickness, poisson, substrate)));
     }
 }
 

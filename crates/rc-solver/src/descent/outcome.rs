@@ -49,9 +49,9 @@ impl Outcome {
         }
     }
 
-    /// U/σ0, the ratio of elastic energy to mean pressure.
-    pub(crate) fn energy_length(&self) -> f64 {
-        self.elastic_energy / self.mean_pressure
+    /// U/σ0, the ratio of elastic energy to mean pressure. U has no energy of a uniform pressure.
+    pub(crate) fn energy_length(&self, problem: &Problem) -> f64 {
+        (self.elastic_energy - problem.uniform_energy(self.mean_pressure)) / self.mean_pressure
     }
 
     /// The outcome in the form that users get.

@@ -117,7 +117,7 @@ impl<'a> TileLevels<'a> {
         let tiles = TileSet::full(sides_of(heights.grid())).with_boundary(self.boundary());
         let grid = self.ladder().grid(1);
         let mesh = refine_base(&tiles, &function, grid, self.ranks());
-        let (contact_gap, energy_length) = (outcome.contact_gap, outcome.energy_length());
+        let (contact_gap, energy_length) = (outcome.contact_gap, outcome.energy_length(&self.problem));
         history.coarser = history.coarser.filter(|_| self.ladder().is_even());
         Begun {
             above: n_above - 1,
@@ -173,7 +173,7 @@ impl<'a> TileLevels<'a> {
         let SolvedLevel { elements, pressure, outcome, info: before, work, .. } = level;
         history.levels.pop();
         let mesh = MeshStart { elements, pressure };
-        let (contact_gap, energy_length) = (outcome.contact_gap, outcome.energy_length());
+        let (contact_gap, energy_length) = (outcome.contact_gap, outcome.energy_length(&self.problem));
         let start = TileStart { grid, mesh, contact_gap, energy_length, tile_fraction };
         let mut solved = self.take_over(Begun { above: 0, start, history }, observer);
         if let Some(finest) = solved.history.levels.last_mut() {
@@ -249,8 +249,9 @@ impl<'a> TileLevels<'a> {
     /// It is known as far as a start shows it.
     pub(crate) fn scale(&self, start: &TileStart) -> PressureScale {
         let TileStart { grid, mesh, contact_gap, energy_length, .. } = start;
-        let size = self.penetration(*contact_gap).abs();
-        PressureScale::new((&mesh.elements, &mesh.pressure), self.n_levels(*grid), size, *energy_length)
+        let size = self.largest_displacement(mesh, *contact_gap);
+        let levels = (self.n_levels(*grid), self.data.kernels.unresolved());
+        PressureScale::new((&mesh.elements, &mesh.pressure), levels, size, *energy_length)
     }
 }
 
@@ -290,7 +291,7 @@ impl Levels for TileLevels<'_> {
         } else {
             refine_all(elements, &function, grid)
         };
-        let (contact_gap, energy_length) = (outcome.contact_gap, outcome.energy_length());
+        let (contact_gap, energy_length) = (outcome.contact_gap, outcome.energy_length(&self.problem));
         TileStart { grid, mesh, contact_gap, energy_length, tile_fraction }
     }
 

@@ -4,6 +4,7 @@ use rc_core::{Boundary, Field};
 
 use crate::problem::checked::Problem;
 use crate::problem::control::Control;
+use crate::problem::support::Support;
 use crate::tiles::heights::on_demand::Heights;
 use crate::tiles::memory::base_bytes;
 
@@ -84,12 +85,17 @@ impl Estimate {
         let of_load = |pressure: f64| PROPORTIONALITY * pressure / rms_slope(base, boundary);
         let area = match problem.bounds.control {
             Control::MeanPressure(pressure) => of_load(pressure).max(pressure / problem.bounds.hardness),
-            // The undeformed surfaces overlap on a larger area than they touch on. The penetration of a patch may be
-            // larger than all its heights.
+            // The undeformed surfaces overlap on a larger area than they touch on. The penetration of a patch or a layer
+            // may be larger than all heights.
             Control::Penetration(penetration) => {
                 let overlap = overlap(base, heights.extremes().greatest - penetration);
-                let is_free = boundary == Boundary::Free && problem.bounds.hardness.is_infinite();
-                if is_free { overlap.min(of_load(LOAD_PER_DEPTH * penetration)) } else { overlap }
+                // A base bears at least the part of the load that compresses the layer.
+                let most = match problem.support {
+                    _ if problem.bounds.hardness.is_finite() => f64::INFINITY,
+                    Support { boundary: Boundary::Free, .. } => LOAD_PER_DEPTH * penetration,
+                    Support { compliance, .. } => penetration / compliance,
+                };
+                overlap.min(of_load(most))
             }
         };
         // A flat surface, or one with a single element, touches everywhere.

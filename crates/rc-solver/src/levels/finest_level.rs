@@ -138,7 +138,7 @@ impl TablesForGaps {
 
 /// The maximum |v| of elements with these heights and gaps.
 ///
-/// c in `g = v - h + c` is `offset`.
+/// c in `g = v - h + c` is `offset`. A uniform displacement that is added to it is not counted.
 fn maximum_displacement(mesh: &Mesh, heights: &[f64], gap: &[f64], offset: f64) -> f64 {
     let pairs = heights.par_iter().zip(gap);
     let own = pairs.map(|(h, g)| (g + (h - offset)).abs()).reduce(|| 0.0, f64::max);
@@ -240,9 +240,10 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
             sums = rescale(scale, &elements.layout(), &levels.problem, values, empty);
         }
         let mut outcome = Outcome::new(&levels.problem, &sums, info.grid.len() as f64, true);
-        let size = maximum_displacement(elements, heights, &gap, levels.problem.offset());
-        let n_levels = levels.n_levels(info.grid);
-        let scale = PressureScale::new((elements, &pressure), n_levels, size, outcome.energy_length());
+        let uniform = levels.problem.uniform_displacement(outcome.mean_pressure);
+        let size = maximum_displacement(elements, heights, &gap, levels.problem.offset() + uniform);
+        let n_levels = (levels.n_levels(info.grid), levels.data.kernels.unresolved());
+        let scale = PressureScale::new((elements, &pressure), n_levels, size, outcome.energy_length(&levels.problem));
         // Descents leave room for the error of the certifying operator.
         let error = OperatorError::of(levels.certified().split(), &scale, levels.problem.bounds.control);
         outcome.iteration_error = outcome.certificate.energy;
@@ -329,7 +330,7 @@ fn first_candidates(levels: &TileLevels<'_>, start: &MeshStart, tables: &Tables<
     // Contact is not nearer than the first touch, even if coarser heights reach beyond the highest point.
     let first_touch = levels.problem.offset() - levels.problem.h_max;
     // This is not a proof yet. The margin also stands for the quick operator's error.
-    let gap = contact_gap.max(first_touch) + CANDIDATE_MARGIN * levels.penetration(contact_gap).abs();
+    let gap = contact_gap.max(first_touch) + CANDIDATE_MARGIN * levels.largest_displacement(start, contact_gap);
     let curvature = levels.data.kernels.quick().remainder_curvature() * elements.layout().maximum(pressure, 0.0);
     let smooth = SmoothDisplacement { values: &quick.base_displacement(), curvature, error: 0.0 };
     let places = levels.possible_contact(&smooth, elements.coarsest().extent(), gap);

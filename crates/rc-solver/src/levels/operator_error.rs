@@ -17,9 +17,11 @@ const LARGEST_PART: f64 = 0.5;
 /// The properties of a pressure that the error of its displacement depends on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PressureScale {
+    /// The deviation from the half-space that no operator resolves, as a part of 2/q.
+    pub(crate) unresolved: f64,
     /// Number of levels above the base grid.
     pub(crate) n_levels: usize,
-    /// Maximum displacement, in λ.
+    /// Maximum displacement, in λ, without that of a uniform pressure.
     pub(crate) displacement: f64,
     /// Roughness of the pressure, in λ: see [`roughness`].
     pub(crate) roughness: f64,
@@ -30,11 +32,11 @@ pub(crate) struct PressureScale {
 impl PressureScale {
     pub(crate) fn new(
         (elements, pressure): (&Mesh, &[f64]),
-        n_levels: usize,
+        (n_levels, unresolved): (usize, f64),
         displacement: f64,
         energy_length: f64,
     ) -> Self {
-        Self { n_levels, displacement, roughness: roughness(elements, pressure), energy_length }
+        Self { unresolved, n_levels, displacement, roughness: roughness(elements, pressure), energy_length }
     }
 }
 
@@ -54,8 +56,9 @@ pub(crate) struct OperatorError {
 impl OperatorError {
     /// The error of a split under pressures of this scale.
     pub(crate) fn of(split: GapSplit, scale: &PressureScale, control: Control) -> Self {
-        let PressureScale { n_levels, displacement, roughness, energy_length } = *scale;
-        let displacement = split.error * n_levels as f64 * displacement + split.error_of_roughness * roughness;
+        let PressureScale { unresolved, n_levels, displacement, roughness, energy_length } = *scale;
+        let of_waves = (split.error * n_levels as f64 + unresolved) * displacement;
+        let displacement = of_waves + split.error_of_roughness * roughness;
         let relative = displacement / energy_length;
         // The errors of the mean of the gap and of its minimum may have opposite signs. Under penetration control, G
         // has the mean once more.

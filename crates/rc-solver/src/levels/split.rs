@@ -8,7 +8,7 @@ use rc_kernel::{FreeLove, Love};
 
 use crate::problem::contract::{FEWEST_WAVES, places};
 use crate::problem::error::ProblemError;
-use crate::tiles::solid::smallest_deviation;
+use crate::tiles::solid::largest_unresolved;
 
 /// Relative difference that quadrature may leave between a symbol and that of its split.
 const DIFFERENCE: f64 = 1e-8;
@@ -18,7 +18,7 @@ const DIFFERENCE: f64 = 1e-8;
 /// The symbols on `grid` are compared, or the responses where borders are free. The longest waves and a sample of each
 /// octave are checked. Aliases of the deviation are left out, because the base grid resolves it.
 pub(crate) fn check_split(kernel: &dyn Kernel, split: &dyn SplitByScale, grid: Grid) -> Result<(), ProblemError> {
-    let check = Check { kernel: kernel.name(), split, grid };
+    let check = Check::new(kernel, split, grid);
     if let (Some(own), Some(of_split)) = (kernel.free_response(grid), FreeLove.free_response(grid)) {
         let mut distances = octaves([grid.nx(), grid.ny()]);
         return distances.try_for_each(|at| check.same("free response", at, own(at.0, at.1), of_split(at.0, at.1)));
@@ -40,7 +40,7 @@ pub(crate) fn check_modes(
     modes: &SlidingModes,
     grid: Grid,
 ) -> Result<(), ProblemError> {
-    let (check, compliance) = (Check { kernel: kernel.name(), split, grid }, modes.compliance.clone());
+    let (check, compliance) = (Check::new(kernel, split, grid), modes.compliance.clone());
     let sliding = Sliding::new(DVec2::X, Arc::new(move |q| compliance.at(q)));
     let (Some(own), half_space) = (kernel.sliding_symbol(grid), Love.symbol_while(&sliding, grid)) else {
         return Ok(());
@@ -69,22 +69,30 @@ fn octaves([columns, rows]: [usize; 2]) -> impl Iterator<Item = (usize, usize)> 
 struct Check<'a> {
     kernel: &'static str,
     split: &'a dyn SplitByScale,
+    /// Bound of the curvature, and the wave from which on deviations are not resolved.
+    curvature: f64,
+    below: f64,
     grid: Grid,
 }
 
-impl Check<'_> {
+impl<'a> Check<'a> {
+    fn new(kernel: &dyn Kernel, split: &'a dyn SplitByScale, grid: Grid) -> Self {
+        let (curvature, below) = (split.curvature(), split.deviates_below(largest_unresolved()));
+        Self { kernel: kernel.name(), split, curvature, below, grid }
+    }
+
     /// The deviation of the symbol at a wave. Refuses bounds that it exceeds.
     fn deviation(&self, (kx, ky): (usize, usize)) -> Result<f64, ProblemError> {
         let q = TAU * self.grid.waves(kx, ky);
-        let (deviation, curvature) = (self.split.deviation(q), self.split.curvature());
+        let Self { curvature, below, .. } = *self;
+        let deviation = self.split.deviation(q);
         // The pressure (1 + cos q x)/2 has this second derivative.
         let of_wave = 0.5 * q * q * deviation.abs();
         let is_bounded = of_wave <= curvature;
         if !is_bounded {
             return Err(self.fault("curvature", (kx, ky), curvature, (of_wave, " or more")));
         }
-        let (smallest, below) = (smallest_deviation(), self.split.deviates_below(smallest_deviation()));
-        let is_announced = below >= q || 0.5 * q * deviation.abs() <= smallest;
+        let is_announced = below >= q || 0.5 * q * deviation.abs() <= largest_unresolved();
         if !is_announced {
             return Err(self.fault("wavenumber of the shortest deviation", (kx, ky), below, (q, " or more")));
         }

@@ -55,6 +55,12 @@ pub(crate) struct TileLevels<'a> {
     pub(crate) certified: GapSplit,
 }
 
+/// Part of a bound on the overlap that deviations may have which the base grid does not resolve, relative to 2/q.
+///
+/// Where they have more, the base grid is finer. Overlaps are relative to a length that is about a quarter of the
+/// largest displacement, and half of the bound is for the rest of the operator's error.
+const UNRESOLVED_PART: f64 = 0.05;
+
 /// Checks the `split` of the `kernel`, and samples the heights. Tables are made when they are needed.
 ///
 /// # Errors
@@ -69,11 +75,18 @@ pub(crate) fn prepare<'a>(
     let boundary = Support::of(kernel, grid).boundary;
     // This check comes before any work.
     first_split(params)?;
-    let base = base_sides(&source, params.base_side, boundary)?;
+    let usual = base_sides(&source, params.base_side, boundary)?;
+    let finer = params.base_side.is_none().then(|| base_sides(&source, Some(2 * usual[0]), boundary).ok()).flatten();
     let source = with_border_level(source, params.border_level)?;
-    let ladder = Ladder::new(base, source.grid());
-    let solid = Solid::new(kernel, split, Base::new(ladder, boundary))?;
+    let allowed = UNRESOLVED_PART * params.solve.bound.overlap();
+    let solid = |base| Solid::new(kernel, split, Base::new(Ladder::new(base, source.grid()), boundary), allowed);
+    let (base, solid) = match (solid(usual), finer) {
+        (Ok(solid), _) => (usual, solid),
+        (_, Some(finer)) => (finer, solid(finer)?),
+        (Err(error), None) => return Err(error),
+    };
     check_split(kernel, split, grid)?;
+    let ladder = Ladder::new(base, source.grid());
     let sampled_bytes = Heights::sampled_bytes(&source, ladder);
     let mut kernels = Kernels::new(solid, params.border_level);
     if kernel.sliding_velocity().is_some() {
@@ -88,7 +101,8 @@ pub(crate) fn prepare<'a>(
     }
     check_memory(grid, params.memory_limit, base_bytes(kernels.base().period()) + sampled_bytes, None)?;
     let heights = Heights::with_borders(source, base, boundary)?;
-    Ok(TileData { heights, kernels, sampled_bytes })
+    let half_space = kernel.half_space().map(|_| Kernels::new(kernels.base().into(), params.border_level));
+    Ok(TileData { heights, kernels, half_space, sampled_bytes })
 }
 
 impl<'a> TileLevels<'a> {
@@ -104,7 +118,7 @@ impl<'a> TileLevels<'a> {
         params: &AdaptiveParams,
     ) -> Result<Self, AdaptiveError> {
         let split = first_split(params)?;
-        let support = Support { boundary: data.boundary(), compliance: 0.0 };
+        let support = Support { boundary: data.boundary(), compliance: data.kernels.compliance() };
         let problem = Problem::of_statistics(data.heights.extremes(), asked.bounds(), &params.solve, support)?;
         if problem.h_range == 0.0
             && let Some(refusal) = refusal(&[Feature::Flat], Some(Method::Adaptive))
@@ -222,11 +236,13 @@ impl<'a> TileLevels<'a> {
         ScaledOperator::new(hierarchy, tables, self.mean_pressure(start), self.problem.h_range)
     }
 
-    /// The penetration at which the gap in contact is `contact_gap`.
+    /// A bound of the displacements under pressures like that of `start`, without the one by their mean.
     ///
-    /// No displacement of a partial contact exceeds it.
-    pub(crate) fn penetration(&self, contact_gap: f64) -> f64 {
-        contact_gap - self.problem.offset() + self.problem.h_max
+    /// It is the penetration at which the gap in contact is `contact_gap`. No displacement of a partial contact exceeds
+    /// it.
+    pub(crate) fn largest_displacement(&self, start: &MeshStart, contact_gap: f64) -> f64 {
+        let uniform = self.problem.uniform_displacement(self.mean_pressure(start));
+        (contact_gap - self.problem.offset() + self.problem.h_max - uniform).abs()
     }
 
     /// Tiles where the gap may be less than `gap`, with `extent` columns and rows.

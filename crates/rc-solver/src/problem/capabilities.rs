@@ -31,6 +31,8 @@ pub enum Feature {
     OwnOperator,
     /// An elastic layer.
     Layer,
+    /// An elastic layer on an elastic substrate.
+    Coating,
     /// A patch with free borders.
     FreeBorders,
     /// A given penetration.
@@ -74,7 +76,7 @@ pub enum Feature {
 }
 
 use Feature::{
-    AreaError, BorderLevel, Checkpoint, DryRun, Flat, FreeBorders, Hardness, HeightMap, History, KernelFunction,
+    AreaError, BorderLevel, Checkpoint, Coating, DryRun, Flat, FreeBorders, Hardness, HeightMap, History, KernelFunction,
     LagOnGrid, Layer, Leakage, Line, OblongElements, OblongGrid, OtherSolid, OwnKernel, OwnOperator, Penetration,
     Ranks, Sliding, Spectral, Sweep, UnevenGrid, Watch,
 };
@@ -92,7 +94,6 @@ const ALL: [Not; 3] = [None; 3];
 const NO_FORM: Not = Some("a kernel without a split by scale has no adaptive form");
 const SPECTRAL: Not = Some("the kernel spectral has no adaptive form");
 const OPERATOR: Not = Some("the operator is the caller's");
-const LAYER: Not = Some("a layer has no adaptive form");
 const SQUARE: Not = Some("the adaptive method needs square elements");
 const OF_LOVE: Not = Some("it needs the coefficients of the kernel love on the half-space");
 const HALVES: Not = Some("only the adaptive method halves elements at the edges of contacts");
@@ -103,13 +104,14 @@ const SYMMETRIC: Not = Some("its procedure needs a symmetric operator");
 const DIVIDED: Not = Some("only the adaptive method runs on several ranks");
 
 /// The rows of the table.
-const ROWS: [Row; 26] = [
+const ROWS: [Row; 27] = [
     (Spectral, "kernel", "the kernel spectral", [SPECTRAL, None, OF_LOVE]),
     (OwnKernel, "kernel", "a kernel without a split by scale", [NO_FORM, None, OF_LOVE]),
     (OtherSolid, "kernel", "another solid with a split by scale", [None, None, OF_LOVE]),
     (KernelFunction, "kernel", "a function as kernel", [NO_FORM, None, OF_LOVE]),
     (OwnOperator, "operator", "an operator of the caller", [OPERATOR, None, OPERATOR]),
-    (Layer, "layer_thickness", "an elastic layer", [LAYER, None, OF_LOVE]),
+    (Layer, "layer_thickness", "an elastic layer", [None, None, OF_LOVE]),
+    (Coating, "substrate_young", "a coating on an elastic substrate", [None, None, OF_LOVE]),
     (FreeBorders, "boundary", "free borders", [None, None, Some("it solves on a periodic cell only")]),
     (Penetration, "penetration", "a given penetration", ALL),
     (Hardness, "hardness", "a hardness", [None, None, Some("its pressures have no upper bound")]),
@@ -138,7 +140,7 @@ const ROWS: [Row; 26] = [
 ];
 
 /// Features that exclude each other with every method. The message names the key of the first.
-const PAIRS: [(Feature, Feature, &str); 32] = [
+const PAIRS: [(Feature, Feature, &str); 33] = [
     (Spectral, FreeBorders, "its waves are periodic"),
     (FreeBorders, KernelFunction, "the function describes a periodic cell"),
     (FreeBorders, Layer, "the response of a layer is known in a periodic cell only"),
@@ -163,6 +165,7 @@ const PAIRS: [(Feature, Feature, &str); 32] = [
     (Line, Leakage, "each contact of a profile closes the gap along its whole width"),
     (Sliding, FreeBorders, "its waves are periodic"),
     (Sliding, KernelFunction, "the function has no compliance for each alias of a wave"),
+    (Sliding, Coating, "only one of its two materials would relax"),
     (Sliding, BorderLevel, "the displacement lags behind elements of one size only"),
     (Sliding, Ranks, "rows of tiles are not divided among ranks"),
     (Watch, DryRun, "a dry run has no contact to show"),
@@ -309,9 +312,9 @@ mod tests {
             )
         );
         assert_eq!(
-            told(&[Layer, BorderLevel], None).as_deref(),
+            told(&[OwnKernel, BorderLevel], None).as_deref(),
             Some(
-                "a border level cannot be combined with an elastic layer: a layer has no adaptive form, and only the adaptive method halves elements at the edges of contacts; omit one of the two"
+                "a border level cannot be combined with a kernel without a split by scale: a kernel without a split by scale has no adaptive form, and only the adaptive method halves elements at the edges of contacts; omit one of the two"
             )
         );
     }

@@ -172,6 +172,11 @@ impl Problem {
         }
     }
 
+    /// Displacement by a uniform pressure, in λ.
+    pub(crate) fn uniform_displacement(&self, mean_pressure: f64) -> f64 {
+        self.support.compliance * mean_pressure
+    }
+
     /// Elastic energy of a uniform pressure.
     pub(crate) fn uniform_energy(&self, mean_pressure: f64) -> f64 {
         0.5 * self.support.compliance * mean_pressure * mean_pressure

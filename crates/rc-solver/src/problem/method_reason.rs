@@ -97,7 +97,7 @@ impl fmt::Display for MethodReason {
             Self::DeviationNotResolved { kernel } => {
                 write!(
                     f,
-                    "uniform: the base grid of the adaptive method is too coarse for the solid of the kernel {kernel}"
+                    "uniform: the base grid of the adaptive method is too coarse for the waves at which the solid (kernel {kernel}) is not a half-space, as a thin layer is not"
                 )
             }
             Self::NoLevels { grid } => {

@@ -11,6 +11,8 @@ use crate::tiles::kernels::Kernels;
 pub(crate) struct TileData<'a> {
     pub(crate) heights: Heights<'a>,
     pub(crate) kernels: Kernels,
+    /// The split kernels of the half-space through which current spreads, if the solid is another one.
+    pub(crate) half_space: Option<Kernels>,
     /// Bytes of heights that are sampled on the whole grid.
     pub(crate) sampled_bytes: f64,
 }
@@ -23,11 +25,13 @@ impl TileData<'_> {
 
     /// The same data without a borrow. A borrowed map is copied.
     pub(crate) fn into_owned(shared: Arc<Self>) -> TileData<'static> {
-        let Self { heights, kernels, sampled_bytes } = Arc::try_unwrap(shared).unwrap_or_else(|shared| Self {
-            heights: shared.heights.clone(),
-            kernels: shared.kernels.empty(),
-            sampled_bytes: shared.sampled_bytes,
-        });
-        TileData { heights: heights.into_owned(), kernels, sampled_bytes }
+        let Self { heights, kernels, half_space, sampled_bytes } =
+            Arc::try_unwrap(shared).unwrap_or_else(|shared| Self {
+                heights: shared.heights.clone(),
+                kernels: shared.kernels.empty(),
+                half_space: shared.half_space.as_ref().map(Kernels::empty),
+                sampled_bytes: shared.sampled_bytes,
+            });
+        TileData { heights: heights.into_owned(), kernels, half_space, sampled_bytes }
     }
 }

@@ -64,6 +64,16 @@ impl Kernels {
         self.solid.sliding()
     }
 
+    /// Displacement by a uniform pressure of 1, in λ.
+    pub(crate) fn compliance(&self) -> f64 {
+        self.solid.compliance()
+    }
+
+    /// The largest deviation of the solid from the half-space that no operator resolves, as a part of 2/q.
+    pub(crate) fn unresolved(&self) -> f64 {
+        self.solid.unresolved()
+    }
+
     /// Whether a surface slides over the solid.
     pub(crate) fn is_sliding(&self) -> bool {
         self.solid.sliding().is_some()
@@ -99,7 +109,7 @@ impl Kernels {
     /// The approximate inverse of L. Under a sliding surface, it is that of the solid with the storage modulus.
     pub(crate) fn preconditioner(&self) -> &Prepared<f32> {
         made(&self.preconditioner, || {
-            let solid = self.storage.clone().unwrap_or_else(|| self.base().into());
+            let solid = self.storage.as_ref().unwrap_or(&self.solid).clone();
             Prepared::inverse(&ScaleSplit::new(SplitParams::quick()), solid)
         })
     }

@@ -21,6 +21,8 @@ pub(crate) struct ScaledOperator<'a, T> {
     operator: TileOperator<T, &'a Tables<T>>,
     /// Pressure that is subtracted from every pressure before it is rounded.
     reference: f64,
+    /// Displacement by that pressure, in λ.
+    uniform: f64,
     /// The unit of pressures and displacements.
     ///
     /// It is a power of two, so that no scene underflows or overflows.
@@ -30,17 +32,18 @@ pub(crate) struct ScaledOperator<'a, T> {
 impl<'a, T: Real + Into<f64>> ScaledOperator<'a, T> {
     /// The operator of `tables` on `hierarchy`.
     ///
-    /// Pressures are about `mean`, and displacements about `size`. A uniform pressure displaces nothing, so the mean is
-    /// subtracted if elements cover the cell. Far beyond full contact, the mean is much larger than the pressure from
+    /// Pressures are about `mean`, and displacements about `size`. The displacement by a uniform pressure is known, so the
+    /// mean is subtracted if elements cover the cell. Far beyond full contact, the mean is much larger than the pressure from
     /// the heights. Its rounding and its part of the split kernel's error would then be larger than that pressure.
     pub(crate) fn new(hierarchy: Arc<Hierarchy>, tables: &'a Tables<T>, mean: f64, size: f64) -> Self {
         let reference = if hierarchy.cover_period() { mean } else { 0.0 };
-        Self { operator: TileOperator::new(hierarchy, tables), reference, unit: power_of_two_near(size) }
+        let (uniform, unit) = (tables.compliance * reference, power_of_two_near(size));
+        Self { operator: TileOperator::new(hierarchy, tables), reference, uniform, unit }
     }
 
     /// Smooth remainder on the base grid, in λ: see [`TileOperator::base_displacement`].
     pub(crate) fn base_displacement(&self) -> Vec<f64> {
-        self.operator.base_displacement().iter().map(|&v| self.unit * v.into()).collect()
+        self.operator.base_displacement().iter().map(|&v| self.unit * v.into() + self.uniform).collect()
     }
 }
 
@@ -69,7 +72,7 @@ impl<T: Real + Into<f64>> BlockOperator<f64> for ScaledOperator<'_, T> {
         self.operator.read(&|i, cells| {
             let mut values = [0.0; BLOCK_CELLS];
             for (value, &cell) in values.iter_mut().zip(cells) {
-                *value = self.unit * cell.into();
+                *value = self.unit * cell.into() + self.uniform;
             }
             read(i, &values[..cells.len()]);
         });

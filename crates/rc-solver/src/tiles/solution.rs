@@ -21,6 +21,7 @@ use crate::solution::solved::{Counts, Solved};
 use crate::tiles::bands::{bands, hand_out};
 use crate::tiles::base::Base;
 use crate::tiles::data::TileData;
+use crate::tiles::kernels::Kernels;
 use crate::tiles::ladder::sides_of;
 use crate::tiles::mesh::Mesh;
 use crate::tiles::operator::corrections::TileCorrections;
@@ -118,10 +119,9 @@ impl TileSolution<'_> {
     }
 
     /// dσ0/dΔ if the elements with a `pressure` are held down, which may be `all` in contact.
-    fn stiffness_of(&self, pressure: &[f64], all: bool) -> f64 {
-        let kernels = &self.data.kernels;
+    fn stiffness_of(&self, kernels: &Kernels, pressure: &[f64], all: bool) -> f64 {
         if all && self.is_full_contact() && !self.base().is_free() {
-            return f64::INFINITY;
+            return kernels.compliance().recip();
         }
         let n = self.finest.len() as f64;
         if kernels.is_sliding() {
@@ -202,7 +202,7 @@ impl Solved for TileSolution<'_> {
 
     /// To 1e-3 relative, or to a few percent if the solve did not converge. It takes a few applications of L.
     fn stiffness(&self) -> f64 {
-        self.stiffness_of(&elastic_part(&self.pressure, self.hardness), self.is_elastic())
+        self.stiffness_of(&self.data.kernels, &elastic_part(&self.pressure, self.hardness), self.is_elastic())
     }
 
     fn least_rise(&self) -> Option<f64> {
@@ -217,7 +217,9 @@ impl Solved for TileSolution<'_> {
     }
 
     fn conductance(&self) -> Option<f64> {
-        (!self.is_elastic()).then(|| self.stiffness_of(&self.pressure, true))
+        let half_space = self.data.half_space.as_ref();
+        let is_stiffness = half_space.is_none() && self.is_elastic();
+        (!is_stiffness).then(|| self.stiffness_of(half_space.unwrap_or(&self.data.kernels), &self.pressure, true))
     }
 
     fn stored(&self) -> Option<[&Field; 2]> {

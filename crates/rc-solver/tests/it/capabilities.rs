@@ -52,7 +52,7 @@ fn planned(asked: &[Option<Feature>], method: Option<Method>, ranks: Ranks) -> O
     let flat = if has(Feature::Flat) { 0.0 } else { 1.0 };
     let map = Field::new(grid, bumps(grid.nx(), grid.ny()).values().iter().map(|h| flat * h).collect()).expect("a map");
     let heights: HeightSource<'_> = if has(Feature::HeightMap) { (&map).into() } else { Waves.on(grid) };
-    let layer = LoveLayer(Layer { thickness: 0.3, poisson: 0.3 });
+    let layer = LoveLayer(Layer::on_rigid_base(0.3, 0.3));
     let rubber = Relaxation::single(10.0, 0.1).expect("a material");
     let along = if has(Feature::LagOnGrid) && !has(Feature::UnevenGrid) { DVec2::Y } else { DVec2::X };
     let viscoelastic = Viscoelastic::new(Love, &rubber, 0.1 * along);

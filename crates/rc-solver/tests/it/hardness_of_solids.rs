@@ -11,7 +11,7 @@ use rc_solver::{
 
 use crate::bumps;
 
-const LAYER: Layer = Layer { thickness: 0.2, poisson: 0.3 };
+const LAYER: Layer = Layer::on_rigid_base(0.2, 0.3);
 
 fn solve<'a>(
     heights: &'a Field,

@@ -70,7 +70,7 @@ impl ContactKeys {
             (lower.tolerance, lower.energy_tolerance) = (None, None);
         }
         or_lower!(self, lower, {
-            young, poisson, young2, poisson2, e_star, pressure, penetration, force, hardness, history, speed, direction, prony, glassy_ratio, relaxation_time, fractional, conductivity, jump_distance, kernel, boundary, layer_thickness, layer_poisson, method, border_level,
+            young, poisson, young2, poisson2, e_star, pressure, penetration, force, hardness, history, speed, direction, prony, glassy_ratio, relaxation_time, fractional, conductivity, jump_distance, kernel, boundary, layer_thickness, layer_poisson, substrate_young, substrate_poisson, method, border_level,
             energy_tolerance, tolerance, area_error, viscosity, pressure_drop, output_grid, precision
         });
         self.leakage |= lower.leakage;

@@ -34,7 +34,7 @@ pub struct ContactSetup {
     pub kernel: KernelName,
     /// The boundary, which is what is beyond the heights.
     pub boundary: Boundary,
-    /// The layer in place of the half-space, if there is one.
+    /// The layer or coating in place of the half-space, if there is one.
     pub layer: Option<Layer>,
     /// Sliding over a material that relaxes, if the surface slides.
     pub sliding: Option<SlidingSolid>,
@@ -121,7 +121,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
     features::check(&keys, [])?;
     let boundary = keys.boundary.unwrap_or_default();
-    let layer = elastic_layer::layer(&keys, cell.side())?;
+    let layer = elastic_layer::layer(&keys, units)?;
     let sliding = sliding::solid(&keys)?;
     let params = SolveParams {
         tolerance: tolerance(&keys)?,

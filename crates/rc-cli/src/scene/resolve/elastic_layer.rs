@@ -1,9 +1,9 @@
-//! The keys of an elastic layer.
+//! The keys of an elastic layer and its substrate.
 
-use rc_core::Grid;
-use rc_kernel::{Layer, THINNEST_LAYER};
+use rc_core::{Elasticity, Grid, Units};
+use rc_kernel::{Layer, Substrate, THINNEST_LAYER};
 
-use super::checks::positive;
+use super::checks::{missing, positive};
 use crate::error::CliError;
 use crate::scene::keys::{ContactKeys, KernelName};
 
@@ -31,18 +31,40 @@ fn check_ratio(poisson: f64) -> Result<(), CliError> {
     }
 }
 
-/// The layer in units of the cell side; `None` for a half-space.
-pub(super) fn layer(keys: &ContactKeys, side: f64) -> Result<Option<Layer>, CliError> {
+/// The layer in units of the cell side and its own E*; `None` for a half-space.
+pub(super) fn layer(keys: &ContactKeys, units: Units) -> Result<Option<Layer>, CliError> {
+    let substrate = substrate(keys, units)?;
     let Some(thickness) = keys.layer_thickness else { return Ok(None) };
     if keys.young2.is_some() {
         return Err(CliError::input("young2: a layer is pressed by a rigid body; omit young2, or layer_thickness"));
     }
-    let thickness = positive("layer_thickness", "m", Some(thickness))? / side;
+    let thickness = positive("layer_thickness", "m", Some(thickness))? / units.cell().side();
     let poisson = keys.layer_poisson.or(keys.poisson).ok_or_else(|| {
         CliError::input("layer_poisson: is missing; e_star does not contain Poisson's ratio of the layer")
     })?;
     check_ratio(poisson)?;
-    Ok(Some(Layer { thickness, poisson }))
+    Ok(Some(Layer { thickness, poisson, substrate }))
+}
+
+/// The substrate below a layer, in units of E* of the layer; `None` for a rigid base.
+fn substrate(keys: &ContactKeys, units: Units) -> Result<Option<Substrate>, CliError> {
+    let (young, poisson) = match (keys.substrate_young, keys.substrate_poisson) {
+        (None, None) => return Ok(None),
+        (Some(young), Some(poisson)) => (positive("substrate_young", "Pa", Some(young))?, poisson),
+        (Some(_), None) => return Err(missing("substrate_poisson")),
+        (None, Some(_)) => return Err(missing("substrate_young")),
+    };
+    if keys.layer_thickness.is_none() {
+        return Err(CliError::input(
+            "substrate_young: is given without layer_thickness (m) of the coating on it; give that too, or young for a half-space",
+        ));
+    }
+    if !(0.0..=0.5).contains(&poisson) {
+        return Err(CliError::input(format_args!("substrate_poisson: must be from 0 to 0.5, not {poisson}")));
+    }
+    let substrate = Elasticity::from_young_poisson(young, poisson)
+        .map_err(|cause| CliError::input(format_args!("substrate_young: {cause}")))?;
+    Ok(Some(Substrate { modulus: units.pressure(substrate.e_star()), poisson }))
 }
 
 /// Refuses a layer that is thinner than elements, for the kernel love.

@@ -130,6 +130,11 @@ pub(crate) fn creeping(keys: &ContactKeys) -> Result<(Relaxation, ContactKeys), 
     if keys.speed.is_some() || keys.direction.is_some() {
         return Err(CliError::input("times: the surface is at rest; omit speed and direction, or times"));
     }
+    if keys.substrate_young.is_some() {
+        return Err(CliError::input(
+            "times: a coating creeps on a substrate that does not; omit times, or substrate_young",
+        ));
+    }
     if keys.hardness.is_some() {
         return Err(CliError::input("times: a solid with a hardness does not creep by this rule; omit one of them"));
     }

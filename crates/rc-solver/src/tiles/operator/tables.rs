@@ -27,6 +27,8 @@ use crate::tiles::solid::{Solid, wavenumber};
 pub(crate) struct Tables<T> {
     pub(crate) sizes: Sizes<T>,
     pub(crate) base: Factors<T>,
+    /// Displacement by a uniform pressure of 1, in λ.
+    pub(crate) compliance: f64,
     /// Stencils of levels 1 to K, and transfers to the next coarser level.
     pub(crate) levels: Vec<(Taps<T>, Transfer<T>)>,
     /// Tails of the stencils of levels 1 to K under a sliding surface. Empty at rest.
@@ -103,18 +105,19 @@ impl<T: Real> Prepared<T> {
         }
     }
 
-    /// Prepares about |q|/2 as a preconditioner: the inverse of L except for the mean.
+    /// Prepares about the inverse of L as a preconditioner, except for the mean: |q|/2 for waves of the half-space.
     ///
     /// Under a sliding surface, it is that of the `solid` with the storage modulus of each wave.
     pub(crate) fn inverse(split: &ScaleSplit, solid: impl Into<Solid>) -> Self {
-        let solid = solid.into().half_space();
+        let solid = solid.into();
         let base = solid.base();
         let sizes = T::sizes(split.params());
         let part = (split.inverse_stencil(INVERSE_RADIUS), Transfer::new(&split.level_filter(), sizes.taps));
         let (periodic, [along_x, _]) = (base.periodic_grid(), base.periods_per_side());
         let symbol = SymbolTable::new(periodic, |kx: usize, ky: usize| {
             let storage = solid.sliding().map_or(1.0, |storage| storage.at(2.0 * PI * kx as f64).re);
-            PI * (kx as f64).hypot(ky as f64 / periodic.cell_ratio()) / along_x / storage
+            let of_half_space = PI * (kx as f64).hypot(ky as f64 / periodic.cell_ratio()) / along_x;
+            of_half_space / (1.0 + of_half_space * solid.deviation(kx, ky)) / storage
         });
         Self {
             sizes,
@@ -164,16 +167,18 @@ impl<T: Real> Prepared<T> {
         } else {
             self.symbol.clone()
         };
+        let compliance = self.solid.compliance();
         match self.scale {
             // With free borders a uniform pressure displaces.
             Scale::Side if self.base().is_free() => {}
-            // A constant gives zero (Eq. 3). The base grid subtracts what the stencils add to it.
-            Scale::Side => base.set_mean(T::rounded(-sum / self.base().grid().len() as f64)),
+            // A constant gives zero (Eq. 3), unless the solid is on a base. The base grid subtracts what the stencils
+            // add to it.
+            Scale::Side => base.set_mean(T::rounded((compliance - sum) / self.base().grid().len() as f64)),
             // Its stencils act on differences between levels, which are zero for a constant.
             Scale::Inverse => base.set_mean(T::rounded(0.0)),
         }
         let uneven = is_uneven.then(|| self.uneven(finest, n_levels));
-        Tables { sizes: self.sizes, base, levels, tails, uneven, coarse: self.coarse_tables(n_levels) }
+        Tables { sizes: self.sizes, base, compliance, levels, tails, uneven, coarse: self.coarse_tables(n_levels) }
     }
 
     fn base(&self) -> Base {
