@@ -299,6 +299,76 @@ class Result:
         return self.summary.get("max_loss_tangent")
 
     @property
+    def coulomb_friction(self) -> float | None:
+        """Coulomb's coefficient ``friction`` of a sheared contact. None without a shear."""
+        return self.summary.get("coulomb_friction")
+
+    @property
+    def shear_pressure(self) -> float | None:
+        """Shear force per nominal area (Pa). None without a shear."""
+        return self.summary.get("shear_pressure")
+
+    @property
+    def shear_force(self) -> float | None:
+        """Shear force on the cell (N). None without a shear."""
+        return self.summary.get("shear_force")
+
+    @property
+    def shear_displacement(self) -> float | None:
+        """Tangential displacement of the bodies far from the contact (m). None without a shear."""
+        return self.summary.get("shear_displacement")
+
+    @property
+    def stick_area_fraction(self) -> float | None:
+        """Area where the surfaces stick, relative to the nominal area. None without a shear."""
+        return self.summary.get("stick_area_fraction")
+
+    @property
+    def slip_area_fraction(self) -> float | None:
+        """Area where the surfaces slip, relative to the nominal area. None without a shear."""
+        return self.summary.get("slip_area_fraction")
+
+    @property
+    def tangential_stiffness(self) -> float | None:
+        """Stiffness dτ/dd before slip (Pa/m). None without a shear and in full contact."""
+        return self.summary.get("tangential_stiffness")
+
+    @property
+    def slip_work(self) -> float | None:
+        """Energy of the cell that slip dissipates (J). None without a shear."""
+        return self.summary.get("slip_work")
+
+    @property
+    def shear_error(self) -> float | None:
+        """Bound of the relative error of the tractions in the energy norm. None without a shear."""
+        return self.summary.get("shear_error")
+
+    @property
+    def shear_rounds(self) -> int | None:
+        """Rounds that corrected the tractions. None without a shear."""
+        return self.summary.get("shear_rounds")
+
+    @cached_property
+    def _shear(self) -> tuple[Floats, ...] | None:
+        fields = self._source.shear()
+        return None if fields is None else tuple(_locked(field) for field in fields)
+
+    @property
+    def shear_x(self) -> Floats | None:
+        """Traction on the elastic body along x (Pa), shape (ny, nx), read-only. None without a shear."""
+        return None if self._shear is None else self._shear[0]
+
+    @property
+    def shear_y(self) -> Floats | None:
+        """Traction on the elastic body along y (Pa), shape (ny, nx), read-only. None without a shear."""
+        return None if self._shear is None else self._shear[1]
+
+    @property
+    def slip(self) -> Floats | None:
+        """Length of the slip (m), shape (ny, nx), 0 where it sticks, read-only. None without a shear."""
+        return None if self._shear is None else self._shear[2]
+
+    @property
     def conductance(self) -> float | None:
         """Conductance per nominal area (S/m² or W/(m² K)). None without ``conductivity`` and in full contact."""
         return self.summary.get("conductance")
@@ -466,6 +536,8 @@ class Result:
         fields = {"pressure": self.pressure, "gap": self.gap} if differ else {}
         if differ and (plastic := self.plastic_gap) is not None:
             fields["plastic_gap"] = plastic
+        if differ and (shear := self._shear) is not None:
+            fields["shear"] = np.array(shear)
         if "elements.csv" not in files and (columns := self._source.elements()) is not None:
             fields["elements"] = np.array(columns)
         return _stored, (files, fields, self.spots if self.border_level else None)

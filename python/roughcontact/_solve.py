@@ -93,6 +93,11 @@ def solve(
     glassy_ratio: float | None = None,
     relaxation_time: Quantity | None = None,
     fractional: Fractional | None = None,
+    friction: float | None = None,
+    shear_pressure: Quantity | None = None,
+    shear_displacement: Quantity | None = None,
+    shear_angle: Quantity | None = None,
+    uncoupled: bool | None = None,
     conductivity: Conductivity | None = None,
     jump_distance: Quantity | None = None,
     kernel: Kernel | None = None,
@@ -171,6 +176,15 @@ def solve(
         Instead of ``prony``: one relaxation time (s), with the ratio of the glassy to the relaxed modulus.
     fractional : mapping, optional
         Instead of ``prony``: a fractional Zener solid, ``{"alpha": 0.2, "glassy_ratio": 10, "tau": 1e-3}``.
+    friction : float, optional
+        Coulomb's coefficient of a shear with partial slip, after the normal solve: :attr:`Result.shear_x`, :attr:`Result.slip`.
+    shear_pressure, shear_displacement : float or str, optional
+        Shear force per nominal area (Pa), or tangential displacement (m) of the rough surface. ``friction`` needs one.
+    shear_angle : float or str, optional
+        Direction of the shear: 0 degrees, the default, is along +x, 90 along +y.
+    uncoupled : bool, optional
+        Neglect that unlike bodies couple pressure and shear. Otherwise Poisson's ratios above 0 are refused, unless the
+        bodies are alike, or one is rigid and the other incompressible.
     conductivity : float, (float, float) or str, optional
         Electrical (S/m) or thermal (W/(m K)) conductivity of both bodies, or of each, for :attr:`Result.conductance`.
     jump_distance : float or str, optional

@@ -16,6 +16,9 @@ from roughcontact._records import ContactSpot, Floats
 #: Fluxes along x and y.
 FLUX_FILES = ("flow_x.npy", "flow_y.npy")
 
+#: Files of the tractions of a sheared contact and its slip.
+SHEAR_FILES = ("shear_x.npy", "shear_y.npy", "slip.npy")
+
 
 class Source(Protocol):
     """Where a result comes from: a solve, or the files of one."""
@@ -30,6 +33,7 @@ class Source(Protocol):
     def finest_gap(self) -> Floats | None: ...
     def plastic_gap(self) -> Floats | None: ...
     def residual(self) -> Floats | None: ...
+    def shear(self) -> list[Floats] | None: ...
     def flux(self) -> list[Floats] | None: ...
     def elements(self) -> list[Floats] | None: ...
     def save(self, folder: str) -> None: ...
@@ -70,6 +74,13 @@ class Stored:
 
     def residual(self) -> Floats | None:
         return self._array("residual") if "residual.npy" in self.files else None
+
+    def shear(self) -> list[Floats] | None:
+        if "shear" in self.fields:
+            return list(self.fields["shear"])
+        if SHEAR_FILES[0] not in self.files:
+            return None
+        return [_double(self.files[name]) for name in SHEAR_FILES]
 
     def flux(self) -> list[Floats] | None:
         if FLUX_FILES[0] not in self.files:
@@ -122,4 +133,5 @@ FILES = (
     *("summary.json", "scene.toml", "pressure.npy", "gap.npy", "plastic_gap.npy", "residual.npy"),
     *("contact.png", "elements.csv", "heights.npy", "leakage.png"),
     *FLUX_FILES,
+    *SHEAR_FILES,
 )

@@ -18,6 +18,7 @@ CASES = {
     "leakage": {"pressure": 2e5, "leakage": True},
     "layer": {"pressure": 4e5, "layer_thickness": 3e-4, "layer_poisson": 0.3},
     "sliding": {"pressure": 4e5, "speed": 0.01, "direction": 30, "fractional": "0.3,10,0.02"},
+    "shear": {"pressure": 4e5, "poisson": 0.5, "friction": 0.3, "shear_pressure": 5e4, "shear_angle": 30},
     "patch": {"pressure": 1e5, "boundary": "free"},
     "chosen grid": {"area_error": 0.05, "grid": None, "pressure": 1e6},
 }

@@ -28,6 +28,7 @@ mod pits;
 mod ranks;
 mod reference;
 mod rough;
+mod shear;
 mod sliding;
 mod stress_distribution;
 mod suspicions;

@@ -10,6 +10,7 @@ use crate::manual::{CompletionsArgs, ManArgs};
 use crate::plot::PlotArgs;
 use crate::prepare::args::PrepareArgs;
 use crate::report::args::ReportArgs;
+use crate::shear::args::ShearArgs;
 use crate::solve::args::SolveArgs;
 use crate::study::args::StudyArgs;
 use crate::surface::args::SurfaceArgs;
@@ -37,6 +38,8 @@ pub(crate) enum Command {
     Solve(Box<SolveArgs>),
     /// Solve a list of loads on a list of surfaces; --resume continues after an interruption
     Sweep(Box<SweepArgs>),
+    /// Shear curves with partial slip, loops and losses from the load curves of a sweep
+    Shear(ShearArgs),
     /// Generate, convert or treat a surface
     Surface(Box<SurfaceArgs>),
     /// The usual treatments of a measured map, for rc solve, with pictures of what they did

@@ -24,6 +24,13 @@ pub(crate) fn help_flag() -> Arg {
         .help("Print help")
 }
 
+/// Hides the keys of a shear, which only a single solve has.
+pub(crate) fn without_shear(arg: Arg) -> Arg {
+    const KEYS: [&str; 5] = ["friction", "shear_pressure", "shear_displacement", "shear_angle", "uncoupled"];
+    let is_hidden = KEYS.contains(&arg.get_id().as_str());
+    if is_hidden { arg.hide(true) } else { arg }
+}
+
 /// Adds the arguments of `group` to `command`, heading by heading.
 ///
 /// Clap prints headings in the order of their first arguments. For keys that is the order of scene files.

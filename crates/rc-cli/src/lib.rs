@@ -39,6 +39,7 @@ mod plot;
 mod prepare;
 mod report;
 pub mod run;
+mod shear;
 pub mod solve;
 pub mod study;
 pub mod surface;
@@ -94,6 +95,7 @@ pub fn run(cli: Cli) -> Result<(), CliError> {
     match cli.command {
         Command::Solve(args) => solve::run(*args),
         Command::Sweep(args) => sweep::run(*args),
+        Command::Shear(args) => shear::command::run(&args),
         Command::Surface(args) => surface::run(*args),
         Command::Prepare(args) => prepare::command::run(*args),
         Command::Study(args) => study::command::run(*args),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use rc_core::quantity::{Scale, count, digits, engineering};
-use rc_sweep::{ControlKind, FrictionSummary, LeakageSummary, Summary};
+use rc_sweep::{ControlKind, FrictionSummary, LeakageSummary, ShearSummary, Summary};
 
 use crate::study::record::words_with_error;
 
@@ -63,6 +63,9 @@ pub(crate) fn solved_lines(
         lines.insert(4, ("friction", friction));
         lines.splice(4..4, sliding.map(|sliding| ("sliding", sliding)));
     }
+    if let Some(shear) = &s.shear {
+        lines.splice(4..4, shear_lines(shear));
+    }
     if let Some(plastic) = plastic(s) {
         let residual =
             s.residual_rms_height.map(|rms| ("unloaded surface", format!("rms height {}", engineering(rms, "m"))));
@@ -94,6 +97,25 @@ pub(crate) fn plastic(s: &Summary) -> Option<String> {
         percent(fraction, error),
         engineering(s.hardness?, "Pa")
     ))
+}
+
+/// Lines of a sheared contact.
+fn shear_lines(s: &ShearSummary) -> [(&'static str, String); 3] {
+    let stick = digits(100.0 * s.stick_area_fraction, 4);
+    let stiffness = s.tangential_stiffness.map_or_else(|| "infinite".to_owned(), |value| engineering(value, "Pa/m"));
+    let shear = format!(
+        "{} with the friction coefficient {}, displacement {}",
+        engineering(s.shear_pressure, "Pa"),
+        s.coulomb_friction,
+        engineering(s.shear_displacement, "m")
+    );
+    let areas = format!("{stick} %, {} % of the nominal area", digits(100.0 * s.slip_area_fraction, 4));
+    let work = format!(
+        "{stiffness} before slip, slip dissipates {}, energy error {:.1e}",
+        engineering(s.slip_work, "J"),
+        s.shear_error
+    );
+    [("shear", shear), ("stick, slip area", areas), ("tangential", work)]
 }
 
 /// Text of the friction; `None` without a speed.

@@ -12,7 +12,7 @@ use rc_cli::scene::as_read::AsRead;
 use rc_cli::scene::keys::SurfaceKeys;
 use rc_cli::scene::resolve::ContactSetup;
 use rc_cli::scene::wave_file::WaveFile;
-use rc_cli::solve::{MapHeights, ResultFiles, SolvedFlow};
+use rc_cli::solve::{MapHeights, ResultFiles, SolvedFlow, SolvedShear};
 use rc_core::{Field, Grid};
 use rc_solver::{Solution, Status};
 use rc_sweep::{MapOrigin, Summary, Warning};
@@ -38,6 +38,8 @@ pub(crate) struct Parts {
     pub(crate) failure: Option<String>,
     /// The flow through the gap, if it was asked for and converged.
     pub(crate) flow: Option<SolvedFlow>,
+    /// The shear of the contact, if it was asked for.
+    pub(crate) shear: Option<SolvedShear>,
     /// The warnings that were known before the solve.
     pub(crate) warnings: Vec<Warning>,
     /// Codes and texts of all warnings of the summary. They are needed at once, and the summary takes longer.
@@ -77,10 +79,10 @@ struct Found {
 
 impl Parts {
     fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
-        let Self { surface, waves, contact, solution, flow, warnings, origin, .. } = self;
+        let Self { surface, waves, contact, solution, flow, shear, warnings, origin, .. } = self;
         let (waves, flow, origin) = (waves.as_deref(), flow.as_ref(), origin.as_ref());
-        let residual = self.residual.as_ref();
-        ResultFiles { surface, map, waves, contact, solution, residual, flow, warnings, origin }
+        let (shear, residual) = (shear.as_ref(), self.residual.as_ref());
+        ResultFiles { surface, map, waves, contact, solution, residual, flow, shear, warnings, origin }
     }
 
     pub(crate) fn with_all_warnings(mut self) -> Self {
@@ -148,7 +150,9 @@ impl Solved {
     /// Whether the tolerance was reached.
     #[getter]
     fn converged(&self) -> bool {
-        self.found.parts.solution.status() != Status::NotConverged
+        let parts = &self.found.parts;
+        let shear_has = parts.shear.as_ref().is_none_or(|shear| shear.has_converged);
+        parts.solution.status() != Status::NotConverged && shear_has
     }
 
     /// Message about a solution that did not reach the tolerance.
@@ -213,6 +217,18 @@ impl Solved {
         let side = self.side();
         let values = self.compute(py, move |found| Some(in_unit(found.parts.residual.as_ref()?, side)))?;
         values.map(|values| arrays::array_of(py, self.found.parts.solution.grid(), values)).transpose()
+    }
+
+    /// Tractions along x and y (Pa) and the length of the slip (m), shape (ny, nx); `None` without a shear.
+    fn shear<'py>(&self, py: Python<'py>) -> PyResult<Option<[Bound<'py, PyArray2<f64>>; 3]>> {
+        let (grid, units) = (self.found.parts.solution.grid(), [self.e_star(), self.e_star(), self.side()]);
+        let fields: Option<[Vec<f64>; 3]> = self.compute(py, move |found| {
+            let shear = &found.parts.shear.as_ref()?.solution;
+            let [x, y] = &shear.traction;
+            Some([(x, units[0]), (y, units[1]), (&shear.slip, units[2])].map(|(field, unit)| in_unit(field, unit)))
+        })?;
+        let Some([x, y, slip]) = fields else { return Ok(None) };
+        Ok(Some([arrays::array_of(py, grid, x)?, arrays::array_of(py, grid, y)?, arrays::array_of(py, grid, slip)?]))
     }
 
     /// Displacement (m) of mean zero, shape (ny, nx).

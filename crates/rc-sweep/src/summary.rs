@@ -13,6 +13,7 @@ use crate::leakage::LeakageSummary;
 use crate::memory;
 use crate::origin::MapOrigin;
 use crate::plan::ControlKind;
+use crate::shear::ShearSummary;
 use crate::warning::Warning;
 
 /// One solved contact problem. Pressures are in Pa, lengths in m, and fractions relative to the nominal area.
@@ -121,6 +122,9 @@ pub struct Summary {
     /// Friction of a surface that slides. Its keys exist only with a speed, and are 0 at the speed 0.
     #[serde(flatten)]
     pub friction: Option<FrictionSummary>,
+    /// Shear of the contact. Its keys exist only with a friction that is given.
+    #[serde(flatten)]
+    pub shear: Option<ShearSummary>,
     /// The smallest dp/dσ0 in contact, of a solid that creeps. At most 0 where it would have to pull.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub least_pressure_rise: Option<f64>,
@@ -296,6 +300,7 @@ impl Summary {
                 solution.mean_inverse_gap(units.length(jump)) / units.metres(1.0)
             }),
             friction: context.slides.then(|| FrictionSummary::of(solution, units)),
+            shear: None,
             least_pressure_rise: None,
             elastic_energy: units.joules(observables.elastic_energy),
             rms_height: units.metres(context.rms_height),

@@ -18,7 +18,7 @@
 //! | [`persson`] | random surface, Eq. 7 | a theory, not exact in partial contact |
 //! | [`persson_gap`] | mean gap of a random surface at low loads | a theory; not near first touch, because its surface has no highest point |
 //!
-//! Module [`lattice`] has the constants of the periodic half-space.
+//! [`partial_slip`] makes shear curves from any load curve, for friction under a tangential force. Module [`lattice`] has the constants of the periodic half-space.
 //!
 //! ```
 //! use rc_theory::hertz::{Hertz, PeriodicHertz};
@@ -45,6 +45,7 @@ pub mod full_contact;
 pub mod hertz;
 pub mod hunter;
 pub mod lattice;
+pub mod partial_slip;
 pub mod persson;
 pub mod persson_gap;
 pub mod thin_layer;

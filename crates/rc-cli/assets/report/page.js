@@ -28,7 +28,7 @@ function warnings(texts) {
 function showPage() {
   const data = JSON.parse(document.getElementById("data").textContent);
   const tile = ({ name, value }) => make("div", { class: "tile" }, make("b", {}, value), make("span", {}, name));
-  const body = { mean: meanPage, result: resultPage, surface: surfacePage, study: studyPage, sweep: sweepPage }[data.kind](data);
+  const body = { mean: meanPage, result: resultPage, surface: surfacePage, shear: shearPage, study: studyPage, sweep: sweepPage }[data.kind](data);
   const files = data.files.map(({ title, text }) => make("details", {}, make("summary", {}, title), make("pre", {}, text)));
   document.getElementById("page").replaceChildren(
     make("header", {}, make("h1", {}, data.title), make("span", { class: data.good ? "badge" : "badge bad" }, data.status)),

@@ -3,7 +3,7 @@
 const RELIEF_NOTE = "The heights of the rigid surface, enlarged. Contact has the colours of the map of the pressure. Drag, or press the arrow keys, to turn it.";
 
 /** The maps, and the sections through their cursor. */
-function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElements, peak, averaged }, surface, direction) {
+function mapsAndSections({ sides, pressure, gap, contact, slip, of_elements: ofElements, peak, averaged }, surface, direction) {
   const fields = { pressure: new EmbeddedField(pressure), gap: new EmbeddedField(gap), contact: new EmbeddedField(contact) };
   if (surface) fields.heights = new EmbeddedField(surface.heights);
   const view = new SharedView(peak, Math.min(1, 8 / Math.max(pressure.nx, pressure.ny)));
@@ -17,6 +17,15 @@ function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElement
   });
   contactMap.arrow = direction;
   const maps = [contactMap, map("Pressure", "pressure", pressure.colours, "Pa"), map("Gap", "gap", gap.colours, "m")];
+  if (slip) {
+    const [field, shear] = slip;
+    const slipMap = new FieldMap({
+      title: "Stick and slip", field: new EmbeddedField(field), colours: field.colours, view, sides, ends: () => ["gap, slip", "stick"], movable: false,
+      reading: (value) => (value === 0 ? "gap" : value < 0.7 ? "slip" : "stick"),
+    });
+    slipMap.arrow = shear;
+    maps.push(slipMap);
+  }
   const place = make("span", {});
   const sections = sectionCharts(fields, view, sides);
   const along = (text, axis) => make("button", {
@@ -36,13 +45,14 @@ function mapsAndSections({ sides, pressure, gap, contact, of_elements: ofElement
     place.textContent = `x = ${wrapped[0]}, y = ${wrapped[1]}${view.pinned ? " (held; click to release)" : ""}`;
   });
   view.change();
+  const sheared = slip ? "The arrow is the direction of the shear; dark contact sticks, lighter contact slips. " : "";
   const slides = direction ? "The arrow is the direction in which the surface slides. " : "";
   const help = "The wheel zooms, and dragging moves. A click holds the cursor, arrow keys move it, + and − zoom. ";
   return [
     make("h2", {}, "Maps"),
     make("div", { class: "columns" }, ...maps.map((one) => one.element)),
     controls,
-    make("p", { class: "quiet" }, slides + help + averaged),
+    make("p", { class: "quiet" }, slides + sheared + help + averaged),
     make("h2", {}, "Section through the cursor"),
     make("div", { class: "columns wide" }, sections.pressure.element, sections.gap.element),
     ...(surface && surface.sections.length > 0 ? [bodySections(surface, fields, view, sides)] : []),

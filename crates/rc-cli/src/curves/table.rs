@@ -95,12 +95,12 @@ pub(crate) fn unit_of_load(control: &str) -> &'static str {
 }
 
 impl SweepTable {
-    /// Reads the table in `folder`.
+    /// Reads the table in `folder`, which may be the file of a table without a journal.
     ///
     /// # Errors
     /// [`CliError::Input`] when it does not have the format of a sweep, or has no rows.
     pub(crate) fn read(folder: &Path) -> Result<Self, CliError> {
-        let path = folder.join(TABLE_FILE);
+        let path = if folder.is_file() { folder.to_owned() } else { folder.join(TABLE_FILE) };
         let fail = |cause: String| CliError::in_file(&path, format_args!("not a table of rc sweep: {cause}"));
         let mut reader = csv::Reader::from_path(&path).map_err(|cause| fail(cause.to_string()))?;
         let heads = reader.headers().map_err(|cause| fail(cause.to_string()))?.clone();

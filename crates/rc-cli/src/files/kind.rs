@@ -8,7 +8,8 @@ use rc_sweep::settings_in;
 use super::flow;
 use super::names::{
     COMPARISON_FILE, DIFFERENCE_FILE, GROUP, HEIGHTS_FILE, PAGE_FILE, PLASTIC_GAP_FILE, PREPARE_FILE, PSD_FILE,
-    RECORD_FILE, RESIDUAL_FILE, SCENE_FILE, STUDY_FILE, SUMMARY_FILE, WATCH_FILE, WAVES_FILE,
+    RECORD_FILE, RESIDUAL_FILE, SCENE_FILE, SHEAR_FILE, SHEAR_FILES, SHEAR_TABLE, STUDY_FILE, SUMMARY_FILE, WATCH_FILE,
+    WAVES_FILE,
 };
 use crate::error::CliError;
 
@@ -23,6 +24,8 @@ pub enum Kind {
     Sweep,
     /// Of `rc study`.
     Study,
+    /// Of `rc shear`.
+    Shear,
 }
 
 /// Files of the surface in a result or a prepared folder, with the pictures of `rc plot` and `rc inspect`.
@@ -46,12 +49,15 @@ const OF_SURFACE: [&str; 13] = [
 const OF_PREPARE: [&str; 3] = [PREPARE_FILE, "before.png", "despiked.png"];
 
 /// Files of a solve, with those that `rc plot`, `rc export` and `rc compare` add.
-const OF_RESULT: [&str; 20] = [
+const OF_RESULT: [&str; 23] = [
     SUMMARY_FILE,
     "pressure.npy",
     "gap.npy",
     PLASTIC_GAP_FILE,
     RESIDUAL_FILE,
+    SHEAR_FILES[0],
+    SHEAR_FILES[1],
+    SHEAR_FILES[2],
     "elements.csv",
     "contact.png",
     flow::PICTURE_FILE,
@@ -75,6 +81,7 @@ impl Kind {
         let has = |name: &str| folder.join(name).is_file();
         let kinds = [
             (Self::Study, has(STUDY_FILE)),
+            (Self::Shear, has(SHEAR_FILE)),
             (Self::Sweep, settings_in(folder).is_some()),
             (Self::Result, has(SUMMARY_FILE) && has(SCENE_FILE)),
             (Self::Surface, has(RECORD_FILE) && has(SCENE_FILE)),
@@ -89,6 +96,7 @@ impl Kind {
             Self::Surface => "a surface of rc surface or rc prepare",
             Self::Sweep => "a sweep",
             Self::Study => "a study",
+            Self::Shear => "shear curves",
         }
     }
 
@@ -119,6 +127,7 @@ impl Kind {
         let more: &[&str] = match self {
             Self::Result => &OF_RESULT,
             Self::Surface => &OF_PREPARE,
+            Self::Shear => &[SHEAR_FILE, SHEAR_TABLE],
             Self::Sweep | Self::Study => return Staged::new(folder),
         };
         let staged = Staged::new(folder)?;

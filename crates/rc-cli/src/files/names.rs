@@ -24,6 +24,12 @@ pub(crate) const PAGE_FILE: &str = "report.html";
 /// The record of a study.
 pub(crate) const STUDY_FILE: &str = "study.json";
 
+/// The record of shear curves.
+pub(crate) const SHEAR_FILE: &str = "shear.json";
+
+/// The table of shear curves.
+pub(crate) const SHEAR_TABLE: &str = "shear.csv";
+
 /// The picture of a running solve.
 pub(crate) const WATCH_FILE: &str = "watch.png";
 
@@ -38,6 +44,9 @@ pub(crate) const DIFFERENCE_FILE: &str = "difference.png";
 
 /// The coefficients of waves.
 pub(crate) const WAVES_FILE: &str = "spectrum.txt";
+
+/// Tangential tractions along x and y of a sheared contact, and the length of its slip.
+pub(crate) const SHEAR_FILES: [&str; 3] = ["shear_x.npy", "shear_y.npy", "slip.npy"];
 
 /// The unloaded surface after a history of loads.
 pub(crate) const RESIDUAL_FILE: &str = "residual.npy";

@@ -5,7 +5,7 @@ use std::path::Path;
 use rc_core::{DVec2, Field, Grid, PeriodicCell};
 
 use crate::error::CliError;
-use crate::files::names::{PLASTIC_GAP_FILE, SUMMARY_FILE};
+use crate::files::names::{PLASTIC_GAP_FILE, SHEAR_FILES, SUMMARY_FILE};
 use crate::scene::file;
 use crate::scene::heights::check_finite;
 use crate::scene::resolve;
@@ -30,6 +30,8 @@ pub struct ResultFolder {
     pub gap: Field,
     /// Overlap that plastic flow has removed (m), with a hardness.
     pub plastic_gap: Option<Field>,
+    /// Length of the slip (m) of a sheared contact.
+    pub slip: Option<Field>,
 }
 
 /// Why `path` is not the folder of `what`.
@@ -74,8 +76,11 @@ impl ResultFolder {
         let direction = contact.sliding.as_ref().and_then(SlidingSolid::heading);
         let field = |name: &str| in_cell(&folder.join(name), scene.surface.cell_y.map_or(1.0, |side_y| side_y / side));
         let (pressure, gap) = (field("pressure.npy")?, field("gap.npy")?);
-        let plastic_gap = folder.join(PLASTIC_GAP_FILE).is_file().then(|| field(PLASTIC_GAP_FILE)).transpose()?;
-        for (name, gap) in [("gap.npy", Some(&gap)), (PLASTIC_GAP_FILE, plastic_gap.as_ref())] {
+        let optional = |name: &str| folder.join(name).is_file().then(|| field(name)).transpose();
+        let (plastic_gap, slip) = (optional(PLASTIC_GAP_FILE)?, optional(SHEAR_FILES[2])?);
+        let fields =
+            [("gap.npy", Some(&gap)), (PLASTIC_GAP_FILE, plastic_gap.as_ref()), (SHEAR_FILES[2], slip.as_ref())];
+        for (name, gap) in fields {
             if let Some(gap) = gap.filter(|gap| gap.grid() != pressure.grid()) {
                 let message = format_args!(
                     "{} elements, but pressure.npy has {}; the files are of different solves, so solve again",
@@ -85,7 +90,7 @@ impl ResultFolder {
                 return Err(CliError::in_file(&folder.join(name), message));
             }
         }
-        Ok(Self { summary, side, e_star, direction, pressure, gap, plastic_gap })
+        Ok(Self { summary, side, e_star, direction, pressure, gap, plastic_gap, slip })
     }
 
     /// Sides of the cell along x and y (m).
@@ -119,6 +124,9 @@ impl ResultFolder {
         check_finite(&folder.join("gap.npy"), &result.gap)?;
         if let Some(plastic_gap) = &result.plastic_gap {
             check_finite(&folder.join(PLASTIC_GAP_FILE), plastic_gap)?;
+        }
+        if let Some(slip) = &result.slip {
+            check_finite(&folder.join(SHEAR_FILES[2]), slip)?;
         }
         Ok(result)
     }

@@ -19,11 +19,14 @@ use crate::error::CliError;
 use crate::files::result::ResultFolder;
 use crate::scene::file;
 use crate::scene::keys::{KernelName, Scene};
-use crate::scene::resolve::{self, sliding};
+use crate::scene::resolve::{self, shear, sliding};
 use crate::text;
 use rc_core::quantity::{digits, engineering};
 use rc_plot::Palette;
 use rc_sweep::{FrictionSummary, Summary};
+
+/// Value of an element that slips on the map of stick and slip, on which 1 sticks.
+const SLIPPING: f64 = 0.4;
 
 /// Number of bins of the stress distribution.
 const BINS: usize = 80;
@@ -60,6 +63,8 @@ struct Maps {
     gap: EmbeddedField,
     /// Fraction of each pixel in contact, or fraction of its stored means that are above 0.
     contact: EmbeddedField,
+    /// Stick (1) and slip (between) of a sheared contact, with the direction of the shear as a unit vector.
+    slip: Option<(EmbeddedField, [f64; 2])>,
     /// Whether the contact is that of a profile.
     line: bool,
     /// Whether the fields have one value for each element.
@@ -123,7 +128,7 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
         made: made(),
         kind: "result",
         body: Contact {
-            maps: maps(&result),
+            maps: Maps { slip: slip_map(&result, &scene), ..maps(&result) },
             kappa: surface.as_ref().filter(|_| !scene.surface.has_shape() && direction.is_none()).and_then(|surface| {
                 kappa(summary, result.e_star, surface.nayak().filter(|_| scene.contact.layer_thickness.is_none()))
             }),
@@ -194,6 +199,10 @@ fn tiles(s: &Summary) -> Vec<Tile> {
     if let Some(FrictionSummary { friction, friction_error, .. }) = s.friction {
         tiles.insert(1, tile("friction", text::coefficient(friction, friction_error)));
     }
+    if let Some(shear) = &s.shear {
+        tiles.insert(1, tile("slip area", format!("{} %", digits(100.0 * shear.slip_area_fraction, 4))));
+        tiles.insert(2, tile("shear displacement", engineering(shear.shear_displacement, "m")));
+    }
     if let (Some(fraction), Some(error)) = (s.plastic_area_fraction, s.plastic_area_fraction_error) {
         tiles.insert(1, tile("plastic area", format!("{} %", text::with_error(100.0 * fraction, 100.0 * error))));
     }
@@ -252,10 +261,25 @@ fn maps(result: &ResultFolder) -> Maps {
         pressure: EmbeddedField::of_contact(&pressures, pressures.max(), Bits::Sixteen, Palette::Heat),
         gap: EmbeddedField::of_gap(&gaps, widest, Bits::Sixteen, Palette::Viridis),
         contact: EmbeddedField::of_contact(&contact, 1.0, Bits::Eight, Palette::Ink),
+        slip: None,
         of_elements,
         peak: [peak_at.x, peak_at.y / grid.cell_ratio()],
         averaged,
     }
+}
+
+/// Where the contact slips and sticks, and the direction of the shear; `None` without a shear.
+fn slip_map(result: &ResultFolder, scene: &Scene) -> Option<(EmbeddedField, [f64; 2])> {
+    let slip = result.slip.as_ref().filter(|_| result.is_of_elements())?.values();
+    let pressure = result.pressure.values();
+    let value = |i: usize| match pressure[i] {
+        p if p <= 0.0 => 0.0,
+        _ if slip[i] > 0.0 => SLIPPING,
+        _ => 1.0,
+    };
+    let pixels = pixel_means(result.pressure.grid(), value);
+    let direction = shear::direction(&scene.contact).to_array();
+    Some((EmbeddedField::of_contact(&pixels, 1.0, Bits::Eight, Palette::Heat), direction))
 }
 
 /// P(σ), and the fit of Eq. 7 with its Λ.
@@ -366,8 +390,16 @@ pub(super) mod tests {
             let gap = Field::zeros(grid);
             // With this slope the variance of full contact is spread².
             let summary = summary(grid, mean_pressure, 2.0 * spread, None);
-            let result =
-                ResultFolder { summary, side: 1.0, e_star: 1.0, direction: None, pressure, gap, plastic_gap: None };
+            let result = ResultFolder {
+                summary,
+                side: 1.0,
+                e_star: 1.0,
+                direction: None,
+                pressure,
+                gap,
+                plastic_gap: None,
+                slip: None,
+            };
             let stress = stress(&result).expect("contact");
             let note = &stress.notes[1];
             let (_, part) = note.split_once("E*², ").expect("the part of the theory");
@@ -386,7 +418,16 @@ pub(super) mod tests {
         let result = |n| {
             let summary = summary(Grid::square(n).expect("a grid"), 1.0, 0.1, None);
             let (pressure, gap) = (pressure.clone(), gap.clone());
-            ResultFolder { summary, side: 1.0, e_star: 1.0, direction: None, pressure, gap, plastic_gap: None }
+            ResultFolder {
+                summary,
+                side: 1.0,
+                e_star: 1.0,
+                direction: None,
+                pressure,
+                gap,
+                plastic_gap: None,
+                slip: None,
+            }
         };
         let numbers = |result: &ResultFolder| serde_json::to_value(&maps(result).gap).expect("JSON")["data"].clone();
         let encoded = |numbers: [u16; 4]| {

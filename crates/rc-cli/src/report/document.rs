@@ -21,6 +21,7 @@ const SCRIPT: &str = concat!(
     include_str!("../../assets/report/surface.js"),
     include_str!("../../assets/report/mean.js"),
     include_str!("../../assets/report/study.js"),
+    include_str!("../../assets/report/shear.js"),
     include_str!("../../assets/report/page.js"),
 );
 

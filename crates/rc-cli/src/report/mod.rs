@@ -1,8 +1,8 @@
 //! `rc report`: one page of a result, a surface, a sweep or a mean, for a browser.
 //!
 //! The page needs no network. It is a frame ([`document`]), a script, and data. [`contact`] makes the data of a solve,
-//! [`surface`] those of a surface (of a result: [`result_surface`]), [`curves`] those of a sweep, [`mean`] those of a mean over realisations, and [`study`]
-//! those of a study. All texts are made here, and the script shows them as text. The script draws maps and charts from numbers.
+//! [`surface`] those of a surface (of a result: [`result_surface`]), [`curves`] those of a sweep, [`mean`] those of a mean over realisations, [`study`]
+//! those of a study, and [`shear`] those of shear curves. All texts are made here, and the script shows them as text. The script draws maps and charts from numbers.
 
 pub(crate) mod args;
 
@@ -19,6 +19,7 @@ mod mean;
 mod page;
 mod percolation;
 mod result_surface;
+mod shear;
 mod spot_sizes;
 mod study;
 mod surface;
@@ -34,6 +35,7 @@ use crate::error::CliError;
 use crate::files::names::{PAGE_FILE, SUMMARY_FILE};
 use crate::files::result::no_folder;
 use crate::inspect::{folder_of, is_scene};
+use crate::shear::record::ShearRecord;
 use crate::study::record::StudyRecord;
 use crate::terminal;
 use rc_sweep::{TABLE_FILE, files, settings_in};
@@ -54,14 +56,18 @@ fn html(folder: &Path, quiet: bool) -> Result<String, CliError> {
     if let Some(record) = StudyRecord::read(folder)? {
         return Ok(of_study(folder, &record));
     }
+    if let Some(record) = ShearRecord::read(folder)? {
+        return Ok(document::html(&shear::page(&record)));
+    }
     let settings = settings_in(folder);
     if !folder.join(TABLE_FILE).is_file() {
         return match settings {
             Some(_) => Err(no_table(folder)),
             None if folder.join(SUMMARY_FILE).exists() => Ok(document::html(&contact::page(folder)?)),
-            None => {
-                Err(CliError::in_file(folder, "not a result; give the --out folder of a solve, a sweep or a study"))
-            }
+            None => Err(CliError::in_file(
+                folder,
+                "not a result; give the --out folder of a solve, a sweep or a study, or of rc shear",
+            )),
         };
     }
     match settings.as_ref() {

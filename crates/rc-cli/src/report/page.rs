@@ -20,7 +20,7 @@ pub(super) struct Page<B> {
     pub(super) files: Vec<Text>,
     /// Program and version that made the page.
     pub(super) made: String,
-    /// `result`, `surface`, `sweep`, `mean` or `study`, which tells the script which parts to draw.
+    /// `result`, `surface`, `sweep`, `mean`, `study` or `shear`, which tells the script which parts to draw.
     pub(super) kind: &'static str,
     #[serde(flatten)]
     pub(super) body: B,

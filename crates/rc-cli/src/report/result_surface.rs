@@ -189,6 +189,7 @@ mod tests {
             pressure: field(|touches| if touches { 4.0 } else { 0.0 }),
             gap: field(|touches| if touches { 1e-12 } else { 0.5 }),
             plastic_gap: None,
+            slip: None,
         };
         let heights = field(|touches| if touches { 1.0 } else { 0.25 });
         let [along_x, along_y] = &sections(&heights, &result, -0.5)[..] else { panic!("two sections") };

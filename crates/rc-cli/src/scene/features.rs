@@ -20,6 +20,7 @@ pub(crate) fn of_contact(keys: &ContactKeys) -> Vec<Feature> {
         (Feature::BorderLevel, keys.border_level.is_some_and(|level| level > 0)),
         (Feature::AreaError, keys.area_error.is_some()),
         (Feature::Leakage, keys.leakage),
+        (Feature::Shear, keys.friction.is_some()),
         (Feature::Sliding, keys.speed.is_some_and(|speed| speed > 0.0)),
     ];
     all.into_iter().filter_map(|(feature, is_there)| is_there.then_some(feature)).collect()

@@ -266,6 +266,31 @@ pub struct ContactKeys {
     #[arg(long, value_name = "ALPHA,RATIO,S", help_heading = help::PHYSICS, hide_short_help = true, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fractional: Option<FractionalSpec>,
+    /// Coulomb's coefficient of a shear with partial slip, after the normal solve
+    ///
+    /// It needs --shear-pressure or --shear-displacement.
+    #[arg(long, value_name = "MU", help_heading = help::PHYSICS, allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<f64>,
+    /// Shear force per nominal area (Pa), with --friction: slip, stick, tractions
+    #[arg(long, value_name = "PA", help_heading = help::PHYSICS, value_parser = pressure::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "pressure::read", skip_serializing_if = "Option::is_none")]
+    pub shear_pressure: Option<f64>,
+    /// Tangential displacement (m) of the rough surface, instead of --shear-pressure
+    #[arg(long, value_name = "M", help_heading = help::PHYSICS, hide_short_help = true, value_parser = length::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
+    pub shear_displacement: Option<f64>,
+    /// Direction of the shear (degrees): 0 is along +x, 90 along +y [default: 0]
+    #[arg(long, value_name = "DEG", help_heading = help::PHYSICS, hide_short_help = true, value_parser = angle::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "angle::read", skip_serializing_if = "Option::is_none")]
+    pub shear_angle: Option<f64>,
+    /// Neglect that unlike bodies couple pressure and shear
+    ///
+    /// Without it, a Poisson's ratio above 0 is refused unless the bodies are alike, or one is rigid and the other
+    /// incompressible.
+    #[arg(long, help_heading = help::PHYSICS, hide_short_help = true)]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub uncoupled: bool,
     /// Conductivities of both bodies, such as 400,50: adds the conductance
     ///
     /// Electrical (S/m) or thermal (W/(m K)). One value stands for both bodies.

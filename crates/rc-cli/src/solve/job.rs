@@ -177,7 +177,8 @@ impl Job {
                 let text = text::solved(summary, units.cell().sides(), units.elasticity().e_star(), sliding);
                 let is_lost = self.scene.contact.keys.elements && !has_elements;
                 let note = if is_lost { NO_ELEMENTS } else { "" };
-                if let Some(note) = sliding_note::of(summary, &self.scene.contact) {
+                let of_shear = self.scene.contact.shear.as_ref().and_then(|shear| shear.note.clone());
+                for note in sliding_note::of(summary, &self.scene.contact).into_iter().chain(of_shear) {
                     terminal::tell(&note);
                 }
                 terminal::print(&(text + note + &text::written(self.run.out.as_deref())))

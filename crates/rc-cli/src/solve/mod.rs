@@ -14,6 +14,7 @@ mod messages;
 mod over_ranks;
 mod result_files;
 mod shared_fields;
+pub(crate) mod shear;
 mod sliding_note;
 
 pub use checked::CheckedScene;
@@ -22,6 +23,7 @@ pub use leakage::SolvedFlow;
 pub(crate) use leakage::memory_factor;
 pub use over_ranks::main_over_ranks;
 pub use result_files::{MapHeights, ResultFiles};
+pub use shear::SolvedShear;
 pub use solved::{ProblemSetup, Solved, SolvedParts};
 
 use std::path::PathBuf;

@@ -9,13 +9,14 @@ use rc_core::{DVec2, Field, Grid, Units};
 use rc_fractal::height_and_slope_of_grid;
 use rc_heights::npy::{Precision, RowWriter};
 use rc_plot::{ContactRows, save_png};
-use rc_solver::{ContactElement, Solution};
+use rc_solver::{ContactElement, Solution, Status};
 use rc_sweep::files::{FileError, Staged};
 use rc_sweep::{MapOrigin, SecondBody, SolveContext, Summary, Warning};
 
 use super::leakage::SolvedFlow;
 use super::map_file::MapFile;
-use super::{flow_files, shared_fields};
+use super::shear::SolvedShear;
+use super::{flow_files, shared_fields, shear};
 use crate::error::CliError;
 use crate::files::kind::Kind;
 use crate::files::names::{GROUP, HEIGHTS_FILE, PLASTIC_GAP_FILE, RESIDUAL_FILE, SCENE_FILE, SUMMARY_FILE};
@@ -45,6 +46,8 @@ pub struct ResultFiles<'a> {
     pub residual: Option<&'a Field>,
     /// The flow through the gap, if it was asked for.
     pub flow: Option<&'a SolvedFlow>,
+    /// The shear of the contact, if it was asked for.
+    pub shear: Option<&'a SolvedShear>,
     /// The warnings that were known before the solve.
     pub warnings: &'a [Warning],
     /// The file of the map, if it was read from one.
@@ -95,15 +98,20 @@ impl ResultFiles<'_> {
         let second_body = keys.young2.zip(keys.poisson2).map(|(young, poisson)| SecondBody { young, poisson });
         let control = if keys.force.is_some() { "force".to_owned() } else { summary.control };
         let (force, source) = (keys.force, self.origin.cloned());
+        let is_open = self.shear.is_some_and(|shear| !shear.has_converged);
+        let status = if is_open { Status::NotConverged.name().to_owned() } else { summary.status };
+        let shear = self.shear.map(|shear| shear.summary(self.contact));
         let least_pressure_rise = self.contact.creep.and_then(|_| self.solution.least_pressure_rise());
         let residual_rms_height =
             self.residual.map(|heights| self.contact.units.metres(height_and_slope_of_grid(heights)[0]));
         Summary {
+            status,
             control,
             force,
             residual_rms_height,
             least_pressure_rise,
             leakage,
+            shear,
             warnings,
             source,
             second_body,
@@ -163,6 +171,9 @@ impl ResultFiles<'_> {
         add_fields(&mut staged, self.contact, self.solution)?;
         if let Some(flow) = self.flow {
             flow_files::add(&mut staged, self.contact, flow, self.solution)?;
+        }
+        if let Some(shear) = self.shear {
+            shear::add(&mut staged, self.contact, shear)?;
         }
         self.finish(staged, summary)
     }

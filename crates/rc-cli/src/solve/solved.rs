@@ -13,6 +13,7 @@ use super::failure::Failure;
 use super::leakage::{self, SolvedFlow};
 use super::messages;
 use super::result_files::{MapHeights, ResultFiles};
+use super::shear::SolvedShear;
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
 use crate::files::coarsen::check_factor;
@@ -43,6 +44,8 @@ pub struct Solved<'a> {
     residual: Option<Field>,
     /// The flow through the gap, if it was asked for.
     flow: Option<SolvedFlow>,
+    /// The shear of the contact, if it was asked for.
+    shear: Option<SolvedShear>,
     /// The warnings that were known before the solve.
     warnings: Vec<Warning>,
     wall: Duration,
@@ -59,6 +62,8 @@ pub struct SolvedParts<'a> {
     pub residual: Option<Field>,
     /// The flow through the gap, if it was asked for and converged.
     pub flow: Option<SolvedFlow>,
+    /// The shear of the contact, if it was asked for and solved.
+    pub shear: Option<SolvedShear>,
     /// The warnings that were known before the solve.
     pub warnings: Vec<Warning>,
     /// Time to the certified solution.
@@ -85,10 +90,25 @@ impl<'a> ProblemSetup<'a> {
     /// [`CliError::Input`]. A solution that did not converge is not an error, see [`Solved::failure`].
     pub fn solve(self, started: Instant, observer: &dyn Observer) -> Result<Solved<'a>, CliError> {
         let plan = self.plan()?;
-        if self.contact.history.is_empty() {
-            return self.solved(plan.solve(observer), started);
+        if !self.contact.history.is_empty() {
+            drop(plan);
+            return self.solve_history(started, observer);
         }
-        drop(plan);
+        let Some(shear) = &self.contact.shear else { return self.solved(plan.solve(observer), started) };
+        let again = plan.under(self.contact.control).map_err(|error| self.refuse(&error))?;
+        let solved = self.solved(plan.solve(observer), started)?;
+        if solved.failure.is_some() {
+            return Ok(solved);
+        }
+        let (shear, failure) = {
+            let refuse = |error: &SolveError| self.refuse(error);
+            SolvedShear::of((&again, &solved.solution), (shear, self.contact.units), observer, &refuse)?
+        };
+        Ok(Solved { shear, failure, wall: started.elapsed(), ..solved })
+    }
+
+    /// Solves the loads of a history, one after the other.
+    fn solve_history(self, started: Instant, observer: &dyn Observer) -> Result<Solved<'a>, CliError> {
         let (mut residual, loads) = (None, &self.contact.history);
         let result = self.contact_problem().solve_history(loads, &self.params(), observer).map(|found| {
             let History { solution, residual: left } = found;
@@ -228,7 +248,7 @@ impl<'a> ProblemSetup<'a> {
             }
             None => (None, failure),
         };
-        Solved { problem: self, solution, failure, residual: None, flow, warnings: self.warnings(), wall }
+        Solved { problem: self, solution, failure, residual: None, flow, shear: None, warnings: self.warnings(), wall }
     }
 
     /// The solver's refusal in SI units.
@@ -241,8 +261,8 @@ impl<'a> Solved<'a> {
     /// The parts of the solution, without the problem.
     #[must_use]
     pub fn into_parts(self) -> SolvedParts<'a> {
-        let Self { solution, failure, residual, flow, warnings, wall, .. } = self;
-        SolvedParts { solution, failure, residual, flow, warnings, wall }
+        let Self { solution, failure, residual, flow, shear, warnings, wall, .. } = self;
+        SolvedParts { solution, failure, residual, flow, shear, warnings, wall }
     }
 
     /// Number of warnings that were known before the solve.
@@ -292,9 +312,10 @@ impl<'a> Solved<'a> {
         let ProblemSetup { surface, contact, .. } = self.problem;
         let map = surface.map().map(|(heights, as_read)| MapHeights::InCell { heights, as_read });
         let waves = surface.wave_file().map(AsRef::as_ref);
-        let (flow, warnings, origin) = (self.flow.as_ref(), &self.warnings[..], surface.origin.as_ref());
-        let (solution, residual) = (&self.solution, self.residual.as_ref());
-        ResultFiles { surface: &surface.keys, map, waves, contact, solution, residual, flow, warnings, origin }
+        let (flow, shear) = (self.flow.as_ref(), self.shear.as_ref());
+        let (warnings, origin) = (&self.warnings[..], surface.origin.as_ref());
+        let (surface, solution, residual) = (&surface.keys, &self.solution, self.residual.as_ref());
+        ResultFiles { surface, map, waves, contact, solution, residual, flow, shear, warnings, origin }
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Arg, Args};
 use rc_sweep::Loads;
 
+use crate::help::without_shear;
 use crate::prepare::args::{Steps, without_generated};
 use crate::scene::keys::Scene;
 use crate::scene::quantity::pressures;
@@ -14,6 +15,7 @@ use crate::scene::quantity::pressures;
 #[command(after_help = STUDY_HELP)]
 #[command(mut_args(without_generated))]
 #[command(mut_args(without_loads))]
+#[command(mut_args(without_shear))]
 #[command(mut_arg("out", |out| out.required(true).help("Folder for the rows, the tables and the page")))]
 #[command(mut_arg("time_limit", |limit| limit.hide(false)))]
 pub(crate) struct StudyArgs {

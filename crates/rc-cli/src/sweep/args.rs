@@ -8,6 +8,7 @@ use rc_sweep::{Loads, Seeds, WantedMean};
 use super::specs::{ListSpec, QUANTITIES, ShardSpec};
 use super::varied::Variation;
 use crate::error::CliError;
+use crate::help::without_shear;
 use crate::scene::keys::Scene;
 use crate::scene::quantity::{penetrations, pressures, times};
 use crate::scene::values::Fraction;
@@ -17,6 +18,7 @@ use crate::scene::values::Fraction;
 #[command(after_help = SWEEP_HELP, after_long_help = SWEEP_MANUAL, args_conflicts_with_subcommands = true)]
 #[command(mut_arg("out", |out| out.help("Folder for the rows and the table; must be given")))]
 #[command(mut_arg("area_error", |refused| refused.hide(true)))]
+#[command(mut_args(without_shear))]
 #[command(mut_arg("speed", |one| one.hide_short_help(true)))]
 pub(crate) struct SweepArgs {
     /// What else there is to do with sweeps.

@@ -213,7 +213,6 @@ impl SweptSurface {
         contact: &ContactKeys,
         (control, loads): (ControlKind, &[f64]),
     ) -> Result<Self, CliError> {
-        features::check(contact, [Feature::Sweep])?;
         let seed =
             setup.keys.seed.filter(|_| setup.keys.is_realisation() || matches!(setup.source, Source::Random { .. }));
         let loads = match contact.force {
@@ -221,6 +220,7 @@ impl SweptSurface {
             _ => loads.to_vec(),
         };
         let keys = with_load(control, contact, loads.first().copied());
+        features::check(&keys, [Feature::Sweep])?;
         let contact = resolve::contact(keys, setup.cell)?;
         let setup = setup.bounded(contact.boundary)?;
         let contact = with_load(control, &contact.keys, None);

@@ -19,6 +19,7 @@ mod rectangles;
 mod report;
 mod robustness;
 mod shapes;
+mod shear;
 mod sliding;
 mod solids;
 mod solve;

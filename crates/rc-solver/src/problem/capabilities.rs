@@ -67,6 +67,8 @@ pub enum Feature {
     Sliding,
     /// A sliding surface whose lag has no adaptive form: not along x, without relaxation times, or on an uneven grid.
     LagOnGrid,
+    /// Friction with partial slip under a shear force.
+    Shear,
     /// Many loads or surfaces.
     Sweep,
     /// A picture while the solve runs.
@@ -76,9 +78,9 @@ pub enum Feature {
 }
 
 use Feature::{
-    AreaError, BorderLevel, Checkpoint, Coating, DryRun, Flat, FreeBorders, Hardness, HeightMap, History, KernelFunction,
-    LagOnGrid, Layer, Leakage, Line, OblongElements, OblongGrid, OtherSolid, OwnKernel, OwnOperator, Penetration,
-    Ranks, Sliding, Spectral, Sweep, UnevenGrid, Watch,
+    AreaError, BorderLevel, Checkpoint, Coating, DryRun, Flat, FreeBorders, Hardness, HeightMap, History,
+    KernelFunction, LagOnGrid, Layer, Leakage, Line, OblongElements, OblongGrid, OtherSolid, OwnKernel, OwnOperator,
+    Penetration, Ranks, Shear, Sliding, Spectral, Sweep, UnevenGrid, Watch,
 };
 
 /// Why a method does not take a feature; `None` if it does.
@@ -101,10 +103,13 @@ const OF_MAPS: Not = Some("its mesh divides the area of a map, and a profile has
 const NO_TAILS: Not =
     Some("it needs a series of relaxation times, a velocity along x, and a grid that can be halved several times");
 const SYMMETRIC: Not = Some("its procedure needs a symmetric operator");
+const NORMAL: Not = Some("its coefficients are those of normal pressures");
 const DIVIDED: Not = Some("only the adaptive method runs on several ranks");
 
+const TANGENTIAL: &str = "its response to tangential tractions is not known";
+
 /// The rows of the table.
-const ROWS: [Row; 27] = [
+const ROWS: [Row; 28] = [
     (Spectral, "kernel", "the kernel spectral", [SPECTRAL, None, OF_LOVE]),
     (OwnKernel, "kernel", "a kernel without a split by scale", [NO_FORM, None, OF_LOVE]),
     (OtherSolid, "kernel", "another solid with a split by scale", [None, None, OF_LOVE]),
@@ -134,13 +139,14 @@ const ROWS: [Row; 27] = [
     (Checkpoint, "checkpoint", "a checkpoint", ALL),
     (Sliding, "speed", "a sliding surface", [None, None, SYMMETRIC]),
     (LagOnGrid, "speed", "a lag that only whole grids have", [NO_TAILS, None, SYMMETRIC]),
+    (Shear, "friction", "friction with partial slip", [None, None, NORMAL]),
     (Sweep, "sweep", "a sweep", ALL),
     (Watch, "watch", "a picture while it is solved", ALL),
     (DryRun, "dry_run", "a dry run", ALL),
 ];
 
 /// Features that exclude each other with every method. The message names the key of the first.
-const PAIRS: [(Feature, Feature, &str); 33] = [
+const PAIRS: [(Feature, Feature, &str); 46] = [
     (Spectral, FreeBorders, "its waves are periodic"),
     (FreeBorders, KernelFunction, "the function describes a periodic cell"),
     (FreeBorders, Layer, "the response of a layer is known in a periodic cell only"),
@@ -168,6 +174,19 @@ const PAIRS: [(Feature, Feature, &str); 33] = [
     (Sliding, Coating, "only one of its two materials would relax"),
     (Sliding, BorderLevel, "the displacement lags behind elements of one size only"),
     (Sliding, Ranks, "rows of tiles are not divided among ranks"),
+    (Shear, OtherSolid, TANGENTIAL),
+    (Shear, KernelFunction, TANGENTIAL),
+    (Shear, OwnOperator, TANGENTIAL),
+    (Shear, Layer, TANGENTIAL),
+    (Shear, Coating, TANGENTIAL),
+    (Shear, Hardness, "plastic flow under shear is not modelled"),
+    (Shear, BorderLevel, "tangential tractions are on elements of one size"),
+    (Shear, Sliding, "partial slip ends where the whole surface slides"),
+    (Shear, AreaError, "its second contact needs the grid of the first (give grid instead)"),
+    (Shear, Ranks, "tangential tractions are not divided among ranks"),
+    (Shear, Checkpoint, "it solves two contacts, which would share the file"),
+    (Shear, Sweep, "rc shear makes the shear curves of a finished sweep"),
+    (Shear, DryRun, "it solves two contacts (omit friction for the cost of each)"),
     (Watch, DryRun, "a dry run has no contact to show"),
     (Watch, Ranks, "no rank has the whole contact while it is solved"),
     (Leakage, Ranks, "the flow is not solved over ranks"),

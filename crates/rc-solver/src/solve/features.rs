@@ -13,7 +13,7 @@ use crate::solve::params::SolveParams;
 use crate::tiles::ladder::{Ladder, has_squares};
 
 /// The features of a problem that are known before its heights are evaluated.
-pub(super) fn features(problem: &ContactProblem<'_>, params: &SolveParams) -> Vec<Feature> {
+pub(crate) fn features(problem: &ContactProblem<'_>, params: &SolveParams) -> Vec<Feature> {
     let (heights, kernel) = (&problem.heights, problem.kernel.get());
     let is_layer = kernel.uniform_displacement().is_some();
     let is_sliding = kernel.sliding_velocity().is_some();

@@ -11,6 +11,7 @@ mod history;
 mod observers;
 mod operators;
 mod over_ranks;
+mod shear;
 mod sliding;
 mod split;
 mod stops;

@@ -48,8 +48,8 @@ impl SurfaceKeys {
 impl ContactKeys {
     /// These keys laid over `lower`.
     ///
-    /// A key given here removes its alternatives in `lower`. These are `pressure`, `penetration`, `force` and
-    /// `history`, `tolerance` and `energy_tolerance`, `e_star` and the moduli and ratios that it contains, and the materials that
+    /// A key given here removes its alternatives in `lower`. These are `pressure`, `penetration`, `force` and `history`,
+    /// `tolerance` and `energy_tolerance`, `e_star` and the moduli and ratios that it contains, the two kinds of shear, and the materials that
     /// relax.
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
@@ -66,15 +66,19 @@ impl ContactKeys {
         } else if self.glassy_ratio.is_some() || self.relaxation_time.is_some() {
             (lower.prony, lower.fractional) = (None, None);
         }
+        if self.shear_pressure.is_some() || self.shear_displacement.is_some() {
+            (lower.shear_pressure, lower.shear_displacement) = (None, None);
+        }
         if self.tolerance.is_some() || self.energy_tolerance.is_some() {
             (lower.tolerance, lower.energy_tolerance) = (None, None);
         }
         or_lower!(self, lower, {
-            young, poisson, young2, poisson2, e_star, pressure, penetration, force, hardness, history, speed, direction, prony, glassy_ratio, relaxation_time, fractional, conductivity, jump_distance, kernel, boundary, layer_thickness, layer_poisson, substrate_young, substrate_poisson, method, border_level,
+            young, poisson, young2, poisson2, e_star, pressure, penetration, force, hardness, history, speed, direction, prony, glassy_ratio, relaxation_time, fractional, friction, shear_pressure, shear_displacement, shear_angle, conductivity, jump_distance, kernel, boundary, layer_thickness, layer_poisson, substrate_young, substrate_poisson, method, border_level,
             energy_tolerance, tolerance, area_error, viscosity, pressure_drop, output_grid, precision
         });
         self.leakage |= lower.leakage;
         self.elements |= lower.elements;
+        self.uncoupled |= lower.uncoupled;
         self
     }
 }

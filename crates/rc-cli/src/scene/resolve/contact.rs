@@ -8,8 +8,9 @@ use rc_kernel::{FreeLove, Layer, Love, LoveLayer, Spectral, SpectralLayer, Visco
 use rc_solver::{Control, SolveParams, Tolerance};
 
 use super::checks::{missing, positive};
+use super::shear::ShearSetup;
 use super::sliding::SlidingSolid;
-use super::{elastic_layer, sliding};
+use super::{elastic_layer, shear, sliding};
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
 use crate::scene::history::HistorySpec;
@@ -38,6 +39,8 @@ pub struct ContactSetup {
     pub layer: Option<Layer>,
     /// Sliding over a material that relaxes, if the surface slides.
     pub sliding: Option<SlidingSolid>,
+    /// Shear of the contact with partial slip, if it is sheared.
+    pub shear: Option<ShearSetup>,
     /// Ratio of the load of this elastic contact to the load under which a solid has crept; `None` without creep.
     pub creep: Option<f64>,
     /// Method, tolerance and limits, without the available memory.
@@ -119,10 +122,11 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     keys.jump_distance.map_or(Ok(0.0), |jump| positive("jump_distance", "m", Some(jump)))?;
     let history = keys.history.iter().flat_map(|HistorySpec(loads)| loads).map(|load| units.pressure(*load)).collect();
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
-    features::check(&keys, [])?;
+    features::check(&keys, None)?;
     let boundary = keys.boundary.unwrap_or_default();
     let layer = elastic_layer::layer(&keys, units)?;
     let sliding = sliding::solid(&keys)?;
+    let shear = shear::shear(&keys, (control, units))?;
     let params = SolveParams {
         tolerance: tolerance(&keys)?,
         method: keys.method,
@@ -139,6 +143,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
         boundary,
         layer,
         sliding,
+        shear,
         creep,
         params,
         keys,

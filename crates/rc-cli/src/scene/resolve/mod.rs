@@ -10,6 +10,7 @@ mod layers;
 mod like;
 mod map;
 mod realisation;
+pub(crate) mod shear;
 pub(crate) mod sliding;
 mod surface;
 
@@ -19,5 +20,6 @@ pub use contact::{ContactSetup, Place, contact, kernel};
 pub(crate) use elastic_layer::check_thickness;
 pub use layers::layers;
 pub use map::{check_cell_and_material, check_size, check_size_and_material};
+pub use shear::ShearSetup;
 pub use sliding::SlidingSolid;
 pub use surface::{surface, surface_in_cell};

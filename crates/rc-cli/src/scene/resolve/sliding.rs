@@ -69,7 +69,7 @@ pub(crate) fn in_words(keys: &ContactKeys) -> Option<String> {
 }
 
 /// The unit vector at this angle (degrees), which is exact along the axes.
-fn unit_vector(degrees: f64) -> DVec2 {
+pub(super) fn unit_vector(degrees: f64) -> DVec2 {
     let turned = degrees.rem_euclid(360.0);
     let axes = [(0.0, DVec2::X), (90.0, DVec2::Y), (180.0, DVec2::NEG_X), (270.0, DVec2::NEG_Y)];
     let axis = axes.into_iter().find(|(angle, _)| (turned - angle).abs() <= 0.0);
