@@ -2,10 +2,12 @@
 
 mod capabilities;
 mod error_bars;
+mod gas;
 mod gauss_seidel;
 mod handover;
 mod hardness;
 mod hardness_of_solids;
+mod history;
 mod observers;
 mod operators;
 mod over_ranks;
