@@ -315,7 +315,7 @@ pub struct ContactKeys {
     #[arg(long, value_name = "NAME", help_heading = help::PHYSICS, value_parser = boundaries(), hide_possible_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boundary: Option<Boundary>,
-    /// Elastic layer or coating of this thickness (m), bonded to a rigid base
+    /// Layer or coating of this thickness (m), bonded to a rigid base
     #[arg(long, value_name = "M", help_heading = help::PHYSICS, value_parser = length::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
     pub layer_thickness: Option<f64>,

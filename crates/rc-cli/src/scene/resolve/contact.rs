@@ -345,8 +345,7 @@ mod tests {
             ("layer_thickness = 1e-3\ne_star = 1e9\nlayer_poisson = -1.0", "layer_poisson"),
             ("layer_thickness = 1e-3\npoisson = 0.4\nlayer_poisson = 0.3", "layer_poisson"),
             ("layer_poisson = 0.3", "layer_poisson"),
-            ("layer_thickness = 1e-3\nmethod = \"adaptive\"", "method"),
-            ("layer_thickness = 1e-3\nborder_level = 1", "border_level"),
+            ("layer_thickness = 1e-3\nmethod = \"gauss-seidel\"", "method"),
             ("layer_thickness = 1e-3\nkernel = \"own\"", "layer_thickness"),
         ];
         assert_named(&cases);
