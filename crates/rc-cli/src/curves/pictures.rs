@@ -10,7 +10,7 @@ use rc_plot::{
 };
 use rc_sweep::files::Staged;
 
-use super::axis::Axis;
+use super::axis::{Axis, ROUNDING};
 use super::columns::{PRESSURE, QUANTITIES, Quantity};
 use super::means::{AtLoad, Mean};
 use super::table::{Row, SweepTable};
@@ -108,8 +108,8 @@ impl CurvePicture {
         Some(Self {
             name: if quantity.name == "of_bodies" { "conductance-of-bodies" } else { quantity.name },
             title: format!("{}{}{of_seeds}", title[..1].to_uppercase(), &title[1..]),
-            x: Axis::of(against.words, against.unit, is_log, ends(0, is_log)),
-            y: Axis::of(quantity.words, quantity.unit, log_y, ends(1, log_y)),
+            x: Axis::of(against.words, against.unit, is_log.then_some(0.0), ends(0, is_log)),
+            y: Axis::of(quantity.words, quantity.unit, log_y.then_some(ROUNDING), ends(1, log_y)),
             scenes,
             theory,
         })

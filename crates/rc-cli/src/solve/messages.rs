@@ -97,7 +97,7 @@ fn of_adaptive(error: &AdaptiveError, contact: &ContactSetup, budget: Budget) ->
         AdaptiveError::Deviation { deviates_below, resolved, .. } if contact.layer.is_some() => {
             let thickness = contact.keys.layer_thickness.unwrap_or(f64::NAN);
             CliError::input(format_args!(
-                "layer_thickness: {thickness:e} m is too thin for the base grid of the adaptive method; give at least {:e} m, or --method uniform",
+                "layer_thickness: {thickness:e} m is too thin for the base grid of the adaptive method; give at least {:.2e} m, or --method uniform",
                 rounded_up(thickness * deviates_below / resolved)
             ))
         }
