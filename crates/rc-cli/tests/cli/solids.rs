@@ -178,7 +178,7 @@ fn both_methods_solve_a_layer_that_the_base_grid_resolves() {
     let thin = [&["solve"], &words[..6], &["--layer-thickness", "2e-4", "--method", "adaptive"]].concat();
     assert_refused(
         &place.run(&thin),
-        "layer_thickness: 2e-4 m is too thin for the base grid of the adaptive method; give at least 4e-4 m, or --method uniform",
+        "layer_thickness: 2e-4 m is too thin for the base grid of the adaptive method; give at least 4.00e-4 m, or --method uniform",
     );
     let thick_enough = [&["solve", "--quiet"], &words[..6], &["--layer-thickness", "4e-4", "--method", "adaptive"]];
     assert_solved(&place.run(&thick_enough.concat()));
