@@ -3,6 +3,7 @@
 mod capabilities;
 mod error_bars;
 mod gauss_seidel;
+mod gradient;
 mod handover;
 mod hardness;
 mod hardness_of_solids;
