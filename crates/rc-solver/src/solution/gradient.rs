@@ -135,7 +135,7 @@ impl Solution<'_> {
         if let Some(top) = self.solved.highest().filter(|_| held == Held::Penetration) {
             gradient[top] -= sum(&gradient);
         }
-        Ok(self.field(gradient))
+        Ok(self.field(&gradient))
     }
 
     /// Refuses what has no gradient.
@@ -162,7 +162,9 @@ impl Solution<'_> {
         let mut x = self.solved.displaced_by(&vec![1.0; n], false)?;
         let total = sum(&x);
         if total > 0.0 {
-            x.iter_mut().for_each(|x| *x /= total);
+            for x in &mut x {
+                *x /= total;
+            }
         } else if held == Held::MeanPressure {
             return Err(GradientError::NoContact);
         }
@@ -178,12 +180,12 @@ impl Solution<'_> {
         if let Some(top) = self.solved.highest() {
             values[top] += parts.top;
         }
-        self.field(values)
+        self.field(&values)
     }
 
-    fn field(&self, values: Vec<f64>) -> Field {
+    fn field(&self, values: &[f64]) -> Field {
         let mut field = Field::zeros(self.grid());
-        field.values_mut().copy_from_slice(&values);
+        field.values_mut().copy_from_slice(values);
         field
     }
 }
