@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 Grid = Union[int, tuple[int, int], str]
 #: A number in SI units, or text with a unit such as ``"10kPa"``.
 Quantity = Union[float, str]
+#: Mean pressures (Pa) one after the other, or text such as ``"10MPa,0"``.
+History = Union[Sequence[Quantity], str]
 #: A shape at the centre of the cell.
 Shape = Literal["sphere", "cylinder", "cone", "wave", "flat"]
 #: What is beyond the heights.
@@ -58,6 +60,8 @@ def _plain(name: str, value: Any) -> Any:
         return f"{value[0]}x{value[1]}"
     if name == "conductivity" and isinstance(value, (tuple, list)) and len(value) == 2:
         return f"{value[0]},{value[1]}"
+    if name == "history":
+        return ",".join(load if isinstance(load, str) else repr(float(load)) for load in value)
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if name == "prony":

@@ -224,6 +224,12 @@ class Result:
         field = self._source.plastic_gap()
         return None if field is None else _locked(field)
 
+    @cached_property
+    def residual(self) -> Floats | None:
+        """Heights of the unloaded surface after ``history`` (m), shape (ny, nx), read-only. None without it, and if it did not converge."""
+        field = self._source.residual()
+        return None if field is None else _locked(field)
+
     @property
     def force(self) -> float | None:
         """The force that was prescribed (N). None if pressure or penetration was."""
@@ -253,6 +259,11 @@ class Result:
     def mean_plastic_gap(self) -> float | None:
         """Mean over the cell of the overlap that plastic flow has removed (m). None without a hardness."""
         return self.summary.get("mean_plastic_gap")
+
+    @property
+    def residual_rms_height(self) -> float | None:
+        """Rms height of :attr:`residual` (m). None without ``history``."""
+        return self.summary.get("residual_rms_height")
 
     @property
     def friction(self) -> float | None:
@@ -366,6 +377,11 @@ class Result:
     def conductance_error(self) -> float | None:
         """Estimated error of ``conductance``, in its unit."""
         return self.summary.get("conductance_error")
+
+    @property
+    def mean_inverse_gap(self) -> float | None:
+        """Mean of 1/(gap + ``jump_distance``) over the nominal area (1/m). None without ``jump_distance``."""
+        return self.summary.get("mean_inverse_gap")
 
     @cached_property
     def displacement(self) -> Floats:

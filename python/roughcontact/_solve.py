@@ -18,6 +18,7 @@ from roughcontact._keys import (
     Conductivity,
     Fractional,
     Grid,
+    History,
     LengthUnit,
     Mask,
     Method,
@@ -85,6 +86,7 @@ def solve(
     penetration: Quantity | None = None,
     force: Quantity | None = None,
     hardness: Quantity | None = None,
+    history: History | None = None,
     speed: Quantity | None = None,
     direction: Quantity | None = None,
     prony: Prony | None = None,
@@ -97,6 +99,7 @@ def solve(
     shear_angle: Quantity | None = None,
     uncoupled: bool | None = None,
     conductivity: Conductivity | None = None,
+    jump_distance: Quantity | None = None,
     kernel: Kernel | None = None,
     boundary: Boundary | None = None,
     layer_thickness: Quantity | None = None,
@@ -159,6 +162,10 @@ def solve(
         one. These and all other lengths, pressures and forces may be text with a unit, such as ``"10kPa"``.
     hardness : float, optional
         Upper limit of the pressure (Pa), the usual first model of plastic contact. Default: no limit, an elastic contact.
+    history : sequence of float or str, optional
+        Mean pressures (Pa) one after the other, such as ``[1e7, 0]``, instead of ``pressure`` and with ``hardness``. Each
+        finds the surface that plastic flow under those before it has left. The result is that of the last one above 0, and
+        :attr:`Result.residual` is the unloaded surface after the last.
     speed, direction : float or str, optional
         Speed (m/s) of the surface that slides steadily over a solid that relaxes, and its direction: 0 degrees, the default,
         is along +x, 90 along +y. The moduli are the relaxed ones. Adds :attr:`Result.friction`.
@@ -180,6 +187,8 @@ def solve(
         bodies are alike, or one is rigid and the other incompressible.
     conductivity : float, (float, float) or str, optional
         Electrical (S/m) or thermal (W/(m K)) conductivity of both bodies, or of each, for :attr:`Result.conductance`.
+    jump_distance : float or str, optional
+        Jump distance (m) of a gas in the gap, for :attr:`Result.mean_inverse_gap`.
     kernel : {"love", "spectral"} or callable, default "love"
         Discretisation of the half-space. A function ``f(kx, ky)`` of two arrays of wavenumbers (rad/m) returns the
         displacement (m) of a pressure wave of 1 Pa, which is ``2 / (E* |k|)`` for a half-space. The displacement must be

@@ -34,6 +34,7 @@ class Source(Protocol):
     def gradient_of(self, derivatives: Floats, held: str | None) -> Floats: ...
     def finest_gap(self) -> Floats | None: ...
     def plastic_gap(self) -> Floats | None: ...
+    def residual(self) -> Floats | None: ...
     def shear(self) -> list[Floats] | None: ...
     def flux(self) -> list[Floats] | None: ...
     def elements(self) -> list[Floats] | None: ...
@@ -72,6 +73,9 @@ class Stored:
     def plastic_gap(self) -> Floats | None:
         there = "plastic_gap" in self.fields or "plastic_gap.npy" in self.files
         return self._array("plastic_gap") if there else None
+
+    def residual(self) -> Floats | None:
+        return self._array("residual") if "residual.npy" in self.files else None
 
     def shear(self) -> list[Floats] | None:
         if "shear" in self.fields:
@@ -134,7 +138,7 @@ def files_in(folder: str) -> dict[str, bytes]:
 
 #: Files of a result folder; the others there belong to somebody else.
 FILES = (
-    *("summary.json", "scene.toml", "pressure.npy", "gap.npy", "plastic_gap.npy"),
+    *("summary.json", "scene.toml", "pressure.npy", "gap.npy", "plastic_gap.npy", "residual.npy"),
     *("contact.png", "elements.csv", "heights.npy", "leakage.png"),
     *FLUX_FILES,
     *SHEAR_FILES,

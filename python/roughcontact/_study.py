@@ -74,6 +74,7 @@ def study(
     e_star: Quantity | None = None,
     hardness: Quantity | None = None,
     conductivity: Conductivity | None = None,
+    jump_distance: Quantity | None = None,
     kernel: Literal["love", "spectral"] | None = None,
     boundary: Boundary | None = None,
     layer_thickness: Quantity | None = None,
@@ -103,7 +104,7 @@ def study(
     crop, flip, despike, level, fill, high_pass, periodic, taper, low_pass, resample : optional
         What all rows have in common instead of the usual treatments, or besides, as for :func:`prepare`. False leaves a
         usual one out.
-    young, poisson, young2, poisson2, e_star, hardness, conductivity, kernel, boundary, layer_thickness, layer_poisson, substrate_young, substrate_poisson : optional
+    young, poisson, young2, poisson2, e_star, hardness, conductivity, jump_distance, kernel, boundary, layer_thickness, layer_poisson, substrate_young, substrate_poisson : optional
         The solids, as for :func:`solve`. The load is ``pressures``.
     method, energy_tolerance, tolerance, leakage, memory_limit : optional
         As for :func:`solve`.

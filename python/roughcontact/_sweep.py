@@ -107,6 +107,7 @@ def sweep(
     relaxation_time: Quantity | None = None,
     fractional: Fractional | None = None,
     conductivity: Conductivity | None = None,
+    jump_distance: Quantity | None = None,
     kernel: Kernel | None = None,
     boundary: Boundary | None = None,
     layer_thickness: Quantity | None = None,

@@ -46,3 +46,14 @@ def test_a_soft_metal_conducts_better():
 def test_what_is_no_conductivity_is_refused():
     with pytest.raises(ValueError, match="conductivit"):
         rc.solve(**SCENE, conductivity=-1.0)
+
+
+def test_a_gas_conducts_through_the_gap():
+    result = rc.solve(**SCENE, jump_distance="0.1um")
+    inverse = 1 / (1e-7 + np.where(result.pressure > 0, 0.0, result.gap))
+    assert result.mean_inverse_gap == pytest.approx(inverse.mean(), rel=1e-12)
+    assert rc.solve(**SCENE).mean_inverse_gap is None
+    table = rc.sweep(waves=8, grid=128, e_star=1e9, pressures=[2e6], jump_distance=1e-7)
+    assert table[0]["mean_inverse_gap"] == result.mean_inverse_gap
+    with pytest.raises(ValueError, match="jump_distance: must be positive"):
+        rc.solve(**SCENE, jump_distance=0.0)

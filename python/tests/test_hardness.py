@@ -49,3 +49,35 @@ def test_layers_and_patches_have_it(solid):
     assert result.area_fraction > elastic.area_fraction
     assert result.gap.mean() == pytest.approx(result.mean_gap, rel=1e-6)
     assert sum(spot.area_fraction for spot in result.spots) == pytest.approx(result.area_fraction, rel=0.1)
+
+
+LOADS = {"waves": 8, "grid": 128, "e_star": 1e9, "hardness": 5e6}
+
+
+@pytest.mark.parametrize("method", ["uniform", "adaptive"])
+def test_unloading_leaves_a_surface_that_bears_the_same_load(method):
+    first = rc.solve(**LOADS, history=[1e6, "0Pa"], method=method)
+    residual = first.residual
+    assert residual.shape == first.gap.shape and not residual.flags.writeable and np.isfinite(residual).all()
+    assert first.residual_rms_height == pytest.approx(residual.std(), rel=1e-9)
+    assert first.control == "pressure" and first.mean_pressure == pytest.approx(1e6, rel=1e-9)
+    again = rc.solve(residual, cell=first.sides[0], e_star=1e9, hardness=5e6, pressure=1e6, method=method)
+    assert again.area_fraction_cells == pytest.approx(first.area_fraction_cells, rel=7e-3)
+    assert again.mean_plastic_gap < 1e-3 * first.mean_plastic_gap
+    copy = pickle.loads(pickle.dumps(first))
+    assert copy.residual.tobytes() == residual.tobytes()
+
+
+def test_a_history_is_a_list_an_array_or_text():
+    given = [rc.solve(**LOADS, history=loads) for loads in ([5e5, 1e6], np.array([5e5, 1e6]), "0.5MPa,1MPa")]
+    assert given[0].summary["residual_rms_height"] == given[1].residual_rms_height == given[2].residual_rms_height
+    assert rc.solve(**SCENE, hardness=5e6).residual is None
+
+
+def test_a_history_without_hardness_or_load_is_refused():
+    with pytest.raises(ValueError, match="history: .* give hardness too"):
+        rc.solve(waves=8, grid=64, history=[1e5, 0])
+    with pytest.raises(ValueError, match="both pressure and history"):
+        rc.solve(**LOADS, pressure=1e5, history=[1e5, 0])
+    with pytest.raises(ValueError, match="history: one of the loads must be above 0"):
+        rc.solve(**LOADS, history=[0, 0])

@@ -55,6 +55,10 @@ pub(crate) fn solved_lines(
         ("elastic energy", engineering(s.elastic_energy, "J")),
         ("certificate", certificate_line(s)),
     ];
+    if let Some(value) = s.mean_inverse_gap {
+        let text = format!("{} 1/m times the conductivity of the gas", digits(value, 4));
+        lines.insert(10, ("conductance of gas", text));
+    }
     if let Some(friction) = friction(s) {
         lines.insert(4, ("friction", friction));
         lines.splice(4..4, sliding.map(|sliding| ("sliding", sliding)));
@@ -63,7 +67,9 @@ pub(crate) fn solved_lines(
         lines.splice(4..4, shear_lines(shear));
     }
     if let Some(plastic) = plastic(s) {
-        lines.insert(4, ("plastic area", plastic));
+        let residual =
+            s.residual_rms_height.map(|rms| ("unloaded surface", format!("rms height {}", engineering(rms, "m"))));
+        lines.splice(4..4, std::iter::once(("plastic area", plastic)).chain(residual));
     }
     if let Some(leakage) = &s.leakage {
         lines.extend(leakage_lines(leakage));

@@ -216,7 +216,7 @@ impl SplitByScale for Layer {
     fn curvature(&self) -> f64 {
         let interface = self.interface();
         // Long waves bend a stiff layer on a soft substrate like a plate on an elastic base.
-        let length = self.softness().cbrt().max(1.0);
+        let length = self.softness().cbrt().clamp(1.0, 1e6);
         // The deviation is (λ/d) 2/ξ (M - 1).
         2.0 * curvature(|xi| interface.excess(xi), length) / self.thickness
     }

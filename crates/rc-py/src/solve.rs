@@ -138,7 +138,7 @@ impl Prepared {
             refuse(&problem.warnings(), true, "; nothing was solved")?;
         }
         let solved = scene.solve(problem, started, observer)?;
-        let SolvedParts { solution, failure, flow, shear, warnings, wall } = solved.into_parts();
+        let SolvedParts { solution, failure, residual, flow, shear, warnings, wall } = solved.into_parts();
         let solution = solution.into_owned();
         // The heights of a map that is the caller's are not kept.
         let own_map = if is_callers { None } else { surface.shared_map() };
@@ -155,6 +155,7 @@ impl Prepared {
             contact,
             solution,
             failure,
+            residual,
             flow,
             shear,
             warnings,

@@ -32,6 +32,8 @@ pub(crate) struct Parts {
     pub(crate) own_map: Option<(Arc<Field>, AsRead)>,
     pub(crate) contact: ContactSetup,
     pub(crate) solution: Solution<'static>,
+    /// The unloaded surface after a history of loads (λ).
+    pub(crate) residual: Option<Field>,
     /// Message about a solution that did not reach the tolerance.
     pub(crate) failure: Option<String>,
     /// The flow through the gap, if it was asked for and converged.
@@ -79,8 +81,8 @@ impl Parts {
     fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
         let Self { surface, waves, contact, solution, flow, shear, warnings, origin, .. } = self;
         let (waves, flow, origin) = (waves.as_deref(), flow.as_ref(), origin.as_ref());
-        let shear = shear.as_ref();
-        ResultFiles { surface, map, waves, contact, solution, flow, shear, warnings, origin }
+        let (shear, residual) = (shear.as_ref(), self.residual.as_ref());
+        ResultFiles { surface, map, waves, contact, solution, residual, flow, shear, warnings, origin }
     }
 
     pub(crate) fn with_all_warnings(mut self) -> Self {
@@ -208,6 +210,13 @@ impl Solved {
             return Ok(None);
         }
         self.array(py, self.side(), Solution::plastic_gap).map(Some)
+    }
+
+    /// Heights (m) of the unloaded surface after a history of loads, shape (ny, nx); `None` without one.
+    fn residual<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let side = self.side();
+        let values = self.compute(py, move |found| Some(in_unit(found.parts.residual.as_ref()?, side)))?;
+        values.map(|values| arrays::array_of(py, self.found.parts.solution.grid(), values)).transpose()
     }
 
     /// Tractions along x and y (Pa) and the length of the slip (m), shape (ny, nx); `None` without a shear.

@@ -78,6 +78,9 @@ pub struct Summary {
     /// Mean over the cell of the overlap that plastic flow has removed (m).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_plastic_gap: Option<f64>,
+    /// rms height of the unloaded surface after a history of loads (m).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub residual_rms_height: Option<f64>,
     /// Length of the edges of all contacts (m).
     pub contact_perimeter: Option<f64>,
     /// rms pressure over the cell (Pa), from the pressures of elements.
@@ -113,6 +116,9 @@ pub struct Summary {
     /// Estimated error of `conductance`, in its unit.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "as_given")]
     pub conductance_error: Option<Option<f64>>,
+    /// ⟨1/(g + m)⟩ over the nominal area (1/m), with the gap g and the given jump distance m of a gas.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_inverse_gap: Option<f64>,
     /// Friction of a surface that slides. Its keys exist only with a speed, and are 0 at the speed 0.
     #[serde(flatten)]
     pub friction: Option<FrictionSummary>,
@@ -214,6 +220,8 @@ pub struct SolveContext {
     pub threads: usize,
     /// Harmonic mean of the conductivities of the bodies, if they are given.
     pub conductivity: Option<f64>,
+    /// Jump distance (m) of the gas in the gap, if it is given.
+    pub jump_distance: Option<f64>,
     /// Whether a speed is given, which may be 0.
     pub slides: bool,
 }
@@ -274,6 +282,7 @@ impl Summary {
             plastic_area_fraction: observables.plastic.map(|plastic| plastic.fraction),
             plastic_area_fraction_error: observables.plastic.map(|plastic| plastic.error),
             mean_plastic_gap: observables.plastic.map(|plastic| units.metres(plastic.mean_gap)),
+            residual_rms_height: None,
             contact_perimeter: Some(units.metres(observables.area.perimeter)),
             rms_pressure: units.pascals(observables.rms_pressure),
             rms_pressure_corrected: Some(units.pascals(observables.rms_pressure_corrected)),
@@ -286,6 +295,10 @@ impl Summary {
             contact_conductance_error: of_spots[1],
             conductance: context.conductivity.map(|of_bodies| of_spots[0].map(|per_unit| per_unit * of_bodies)),
             conductance_error: context.conductivity.map(|of_bodies| of_spots[1].map(|error| error * of_bodies)),
+            mean_inverse_gap: context.jump_distance.map(|jump| {
+                // It is in 1/λ.
+                solution.mean_inverse_gap(units.length(jump)) / units.metres(1.0)
+            }),
             friction: context.slides.then(|| FrictionSummary::of(solution, units)),
             shear: None,
             least_pressure_rise: None,

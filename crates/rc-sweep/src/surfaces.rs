@@ -241,6 +241,7 @@ where
             wall: solved.wall,
             threads: self.threads,
             conductivity: None,
+            jump_distance: None,
             slides: solved.solution.info().friction.is_some(),
         };
         Ok(Summary::of(&solved.solution, self.contact.units, &context).cells())

@@ -49,6 +49,7 @@ function chartsAgainst(data) {
     { key: "gap", label: "mean gap", unit: "m" },
     { key: "penetration", label: "penetration Δ", unit: "m" },
     { key: "conductance", label: "conductance per conductivity (1/m)" },
+    { key: "gas", label: "mean of 1/(gap + jump distance) (1/m)" },
     { key: "permeance", label: "permeance (m³), mean of x and y", log: true },
   ];
   const title = (label) => `${label[0].toUpperCase()}${label.slice(1)} against ${what}`;
@@ -65,6 +66,7 @@ function sweepCharts(data) {
   const stiffness = { key: "stiffness", label: "stiffness", unit: "Pa/m", log: true };
   const conductance = { key: "conductance", label: "conductance per conductivity (1/m)", log: true };
   const ofBodies = { key: "of_bodies", label: "conductance (W/(m² K) or S/m²)", log: true };
+  const gas = { key: "gas", label: "mean of 1/(gap + jump distance) (1/m)", log: true };
   const permeance = { key: "permeance", label: "permeance (m³), mean of x and y", log: true };
   const friction = { key: "friction", label: "friction coefficient" };
   const logPressure = { ...pressure, log: true };
@@ -76,6 +78,7 @@ function sweepCharts(data) {
     sweepChart("Stiffness against load", data, logPressure, stiffness),
     ...(has(ofBodies) ? [sweepChart("Conductance of the bodies against load", data, logPressure, ofBodies)] : []),
     ...(has(conductance) && !has(ofBodies) ? [sweepChart("Contact conductance against load", data, logPressure, conductance)] : []),
+    ...(has(gas) ? [sweepChart("Conductance of the gas against load", data, logPressure, gas)] : []),
     ...(has(friction) ? [sweepChart("Friction against load", data, pressure, friction)] : []),
     ...(has(permeance) ? [
       sweepChart("Leakage against load", data, logPressure, permeance),

@@ -34,7 +34,7 @@ const BOOKKEEPING: [&str; 26] = [
 ];
 
 /// Units of columns; others have none.
-const UNITS: [(&str, &str); 24] = [
+const UNITS: [(&str, &str); 25] = [
     ("mean_pressure", "Pa"),
     ("rms_pressure", "Pa"),
     ("rms_pressure_corrected", "Pa"),
@@ -51,6 +51,7 @@ const UNITS: [(&str, &str); 24] = [
     ("contact_stiffness", "Pa/m"),
     ("tangential_stiffness", "Pa/m"),
     ("contact_conductance", "1/m"),
+    ("mean_inverse_gap", "1/m"),
     ("elastic_energy", "J"),
     ("permeance_x", "m³"),
     ("permeance_y", "m³"),
@@ -85,7 +86,7 @@ pub(crate) const SWEPT: [Quantity; 2] = [
 ];
 
 /// The quantities that are drawn.
-pub(crate) const QUANTITIES: [Quantity; 10] = [
+pub(crate) const QUANTITIES: [Quantity; 11] = [
     Quantity { name: "area", keys: &["area_fraction"], words: "contact area A/A0", unit: "" },
     Quantity { name: "gap", keys: &["mean_gap"], words: "mean gap", unit: "m" },
     Quantity { name: "penetration", keys: &["penetration"], words: "penetration", unit: "m" },
@@ -96,6 +97,7 @@ pub(crate) const QUANTITIES: [Quantity; 10] = [
         words: "conductance per conductivity",
         unit: "1/m",
     },
+    Quantity { name: "gas", keys: &["mean_inverse_gap"], words: "mean of 1/(gap + jump distance)", unit: "1/m" },
     Quantity { name: "of_bodies", keys: &["conductance"], words: "conductance in W/(m² K) or S/m²", unit: "" },
     Quantity {
         name: "permeance",

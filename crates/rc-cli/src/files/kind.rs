@@ -8,7 +8,8 @@ use rc_sweep::settings_in;
 use super::flow;
 use super::names::{
     COMPARISON_FILE, DIFFERENCE_FILE, GROUP, HEIGHTS_FILE, PAGE_FILE, PLASTIC_GAP_FILE, PREPARE_FILE, PSD_FILE,
-    RECORD_FILE, SCENE_FILE, SHEAR_FILE, SHEAR_FILES, SHEAR_TABLE, STUDY_FILE, SUMMARY_FILE, WATCH_FILE, WAVES_FILE,
+    RECORD_FILE, RESIDUAL_FILE, SCENE_FILE, SHEAR_FILE, SHEAR_FILES, SHEAR_TABLE, STUDY_FILE, SUMMARY_FILE, WATCH_FILE,
+    WAVES_FILE,
 };
 use crate::error::CliError;
 
@@ -48,11 +49,12 @@ const OF_SURFACE: [&str; 13] = [
 const OF_PREPARE: [&str; 3] = [PREPARE_FILE, "before.png", "despiked.png"];
 
 /// Files of a solve, with those that `rc plot`, `rc export` and `rc compare` add.
-const OF_RESULT: [&str; 22] = [
+const OF_RESULT: [&str; 23] = [
     SUMMARY_FILE,
     "pressure.npy",
     "gap.npy",
     PLASTIC_GAP_FILE,
+    RESIDUAL_FILE,
     SHEAR_FILES[0],
     SHEAR_FILES[1],
     SHEAR_FILES[2],

@@ -48,5 +48,8 @@ pub(crate) const WAVES_FILE: &str = "spectrum.txt";
 /// Tangential tractions along x and y of a sheared contact, and the length of its slip.
 pub(crate) const SHEAR_FILES: [&str; 3] = ["shear_x.npy", "shear_y.npy", "slip.npy"];
 
+/// The unloaded surface after a history of loads.
+pub(crate) const RESIDUAL_FILE: &str = "residual.npy";
+
 /// The overlap that plastic flow has removed, with a hardness.
 pub(crate) const PLASTIC_GAP_FILE: &str = "plastic_gap.npy";

@@ -16,6 +16,7 @@ pub(crate) fn of_contact(keys: &ContactKeys) -> Vec<Feature> {
         (Feature::FreeBorders, keys.boundary == Some(Boundary::Free)),
         (Feature::Penetration, keys.penetration.is_some()),
         (Feature::Hardness, keys.hardness.is_some()),
+        (Feature::History, keys.history.is_some()),
         (Feature::BorderLevel, keys.border_level.is_some_and(|level| level > 0)),
         (Feature::AreaError, keys.area_error.is_some()),
         (Feature::Leakage, keys.leakage),

@@ -8,7 +8,7 @@ use rc_heights::{Format, HeightMap, Layout, ReadNote, ReadParams, SAME_LENGTH, S
 use super::as_read::AsRead;
 use super::file;
 use crate::error::CliError;
-use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, SCENE_FILE, SUMMARY_FILE};
+use crate::files::names::{HEIGHTS_FILE, RECORD_FILE, RESIDUAL_FILE, SCENE_FILE, SUMMARY_FILE};
 use rc_core::quantity::engineering;
 
 /// Reads a height map of any format of `rc-heights`, in metres.
@@ -32,7 +32,8 @@ pub fn read(path: &Path, params: &ReadParams, scales: Scales) -> Result<HeightMa
 
 /// The sides (m) of the map in a folder of `rc surface` or `rc solve`, or `None` for any other file.
 fn sides_in_folder(path: &Path) -> Option<[f64; 2]> {
-    let folder = path.parent().filter(|_| path.file_name().is_some_and(|name| name == HEIGHTS_FILE))?;
+    let is_map = path.file_name().is_some_and(|name| name == HEIGHTS_FILE || name == RESIDUAL_FILE);
+    let folder = path.parent().filter(|_| is_map)?;
     if ![RECORD_FILE, SUMMARY_FILE].iter().any(|name| folder.join(name).is_file()) {
         return None;
     }

@@ -13,6 +13,7 @@ use rc_sweep::memory::ByteSize;
 use serde::{Deserialize, Serialize};
 
 use super::form::FormName;
+use super::history::HistorySpec;
 use super::material::{FractionalSpec, PronySpec};
 use super::names::{amplitudes, boundaries, methods, truncations};
 use super::quantity::{angle, force, length, pressure, speed, time, viscosity};
@@ -225,6 +226,14 @@ pub struct ContactKeys {
     #[arg(long, value_name = "PA", help_heading = help::PHYSICS, value_parser = pressure::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "pressure::read", skip_serializing_if = "Option::is_none")]
     pub hardness: Option<f64>,
+    /// Loads one after the other (Pa), such as 1e7,0: what flow leaves
+    ///
+    /// Instead of --pressure, with --hardness. Each mean pressure finds the surface that plastic flow under those before
+    /// it has left. 0 unloads. The results are those of the last one above 0; residual.npy is the unloaded surface after
+    /// the last.
+    #[arg(long, value_name = "P1,P2", help_heading = help::PHYSICS, allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub history: Option<HistorySpec>,
     /// Speed (m/s) of sliding over a solid that relaxes: adds friction
     ///
     /// Steady sliding along +x, or along --direction. The moduli of the solid are the relaxed ones.
@@ -288,6 +297,12 @@ pub struct ContactKeys {
     #[arg(long, value_name = "K1[,K2]", help_heading = help::PHYSICS, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub conductivity: Option<Conductivity>,
+    /// Jump distance m (m) of a gas in the gap g: adds the mean of 1/(g + m)
+    ///
+    /// Its product with the conductivity of the gas is the conductance of the gas.
+    #[arg(long, value_name = "M", help_heading = help::PHYSICS, hide_short_help = true, value_parser = length::parse, allow_hyphen_values = true)]
+    #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
+    pub jump_distance: Option<f64>,
     /// love (the paper's loaded square) or spectral [default: love]
     ///
     /// love: pressure constant on each element, displacement at its centre (Eq. 5). spectral: the symbol 2/(E* q), as
@@ -300,7 +315,7 @@ pub struct ContactKeys {
     #[arg(long, value_name = "NAME", help_heading = help::PHYSICS, value_parser = boundaries(), hide_possible_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub boundary: Option<Boundary>,
-    /// Elastic layer or coating of this thickness (m), bonded to a rigid base
+    /// Layer or coating of this thickness (m), bonded to a rigid base
     #[arg(long, value_name = "M", help_heading = help::PHYSICS, value_parser = length::parse, allow_hyphen_values = true)]
     #[serde(default, deserialize_with = "length::read", skip_serializing_if = "Option::is_none")]
     pub layer_thickness: Option<f64>,
@@ -467,7 +482,7 @@ impl ContactKeys {
     /// Number of keys that give the load.
     #[must_use]
     pub fn n_loads(&self) -> usize {
-        [self.pressure, self.penetration, self.force].iter().flatten().count()
+        [self.pressure, self.penetration, self.force].iter().flatten().count() + usize::from(self.history.is_some())
     }
 }
 

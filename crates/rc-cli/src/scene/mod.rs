@@ -16,6 +16,7 @@ pub mod values;
 pub mod wave_file;
 
 pub mod heights;
+pub mod history;
 mod names;
 mod other_body;
 pub(crate) mod profile;

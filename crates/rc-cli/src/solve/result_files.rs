@@ -6,6 +6,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use rc_core::{DVec2, Field, Grid, Units};
+use rc_fractal::height_and_slope_of_grid;
 use rc_heights::npy::{Precision, RowWriter};
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution, Status};
@@ -18,7 +19,7 @@ use super::shear::SolvedShear;
 use super::{flow_files, shared_fields, shear};
 use crate::error::CliError;
 use crate::files::kind::Kind;
-use crate::files::names::{GROUP, HEIGHTS_FILE, PLASTIC_GAP_FILE, SCENE_FILE, SUMMARY_FILE};
+use crate::files::names::{GROUP, HEIGHTS_FILE, PLASTIC_GAP_FILE, RESIDUAL_FILE, SCENE_FILE, SUMMARY_FILE};
 use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
@@ -41,6 +42,8 @@ pub struct ResultFiles<'a> {
     pub contact: &'a ContactSetup,
     /// The solution.
     pub solution: &'a Solution<'a>,
+    /// The unloaded surface after a history of loads (λ).
+    pub residual: Option<&'a Field>,
     /// The flow through the gap, if it was asked for.
     pub flow: Option<&'a SolvedFlow>,
     /// The shear of the contact, if it was asked for.
@@ -85,6 +88,7 @@ impl ResultFiles<'_> {
             wall,
             threads,
             conductivity: self.contact.keys.conductivity.map(Conductivity::mean),
+            jump_distance: self.contact.keys.jump_distance,
             slides: self.contact.sliding.is_some(),
         };
         let leakage = self.flow.map(|flow| flow.summary.clone());
@@ -98,10 +102,13 @@ impl ResultFiles<'_> {
         let status = if is_open { Status::NotConverged.name().to_owned() } else { summary.status };
         let shear = self.shear.map(|shear| shear.summary(self.contact));
         let least_pressure_rise = self.contact.creep.and_then(|_| self.solution.least_pressure_rise());
+        let residual_rms_height =
+            self.residual.map(|heights| self.contact.units.metres(height_and_slope_of_grid(heights)[0]));
         Summary {
             status,
             control,
             force,
+            residual_rms_height,
             least_pressure_rise,
             leakage,
             shear,
@@ -175,6 +182,14 @@ impl ResultFiles<'_> {
     fn finish(&self, mut staged: Staged, summary: &Summary) -> Result<(), FileError> {
         if let Some(map) = self.map {
             staged.add(HEIGHTS_FILE, |path| map.write(path))?;
+        }
+        if let Some(residual) = self.residual {
+            staged.add(RESIDUAL_FILE, |path| {
+                let side = self.contact.units.cell().side();
+                let mut file = RowWriter::create(path, residual.grid(), side, Precision::Double)?;
+                file.write(residual.values())?;
+                file.finish()
+            })?;
         }
         if let Some(waves) = self.waves {
             staged.add(waves.name(), |path| waves.write(path))?;

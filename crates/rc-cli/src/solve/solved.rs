@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use rc_core::{Boundary, Kernel, Observer};
-use rc_solver::{ContactProblem, Cost, Plan, Solution, SolveError, SolveParams};
+use rc_core::{Boundary, Field, Kernel, Observer};
+use rc_solver::{ContactProblem, Cost, History, Plan, Solution, SolveError, SolveParams};
 use rc_sweep::memory::Budget;
 use rc_sweep::{RowProblem, SolvedRow, Summary, Warning};
 
@@ -40,6 +40,8 @@ pub struct Solved<'a> {
     problem: ProblemSetup<'a>,
     solution: Solution<'a>,
     failure: Option<Failure>,
+    /// The unloaded surface after a history of loads (λ), if it converged.
+    residual: Option<Field>,
     /// The flow through the gap, if it was asked for.
     flow: Option<SolvedFlow>,
     /// The shear of the contact, if it was asked for.
@@ -56,6 +58,8 @@ pub struct SolvedParts<'a> {
     pub solution: Solution<'a>,
     /// What did not converge, if anything.
     pub failure: Option<Failure>,
+    /// The unloaded surface after a history of loads (λ), if it converged.
+    pub residual: Option<Field>,
     /// The flow through the gap, if it was asked for and converged.
     pub flow: Option<SolvedFlow>,
     /// The shear of the contact, if it was asked for and solved.
@@ -86,6 +90,10 @@ impl<'a> ProblemSetup<'a> {
     /// [`CliError::Input`]. A solution that did not converge is not an error, see [`Solved::failure`].
     pub fn solve(self, started: Instant, observer: &dyn Observer) -> Result<Solved<'a>, CliError> {
         let plan = self.plan()?;
+        if !self.contact.history.is_empty() {
+            drop(plan);
+            return self.solve_history(started, observer);
+        }
         let Some(shear) = &self.contact.shear else { return self.solved(plan.solve(observer), started) };
         let again = plan.under(self.contact.control).map_err(|error| self.refuse(&error))?;
         let solved = self.solved(plan.solve(observer), started)?;
@@ -97,6 +105,17 @@ impl<'a> ProblemSetup<'a> {
             SolvedShear::of((&again, &solved.solution), (shear, self.contact.units), observer, &refuse)?
         };
         Ok(Solved { shear, failure, wall: started.elapsed(), ..solved })
+    }
+
+    /// Solves the loads of a history, one after the other.
+    fn solve_history(self, started: Instant, observer: &dyn Observer) -> Result<Solved<'a>, CliError> {
+        let (mut residual, loads) = (None, &self.contact.history);
+        let result = self.contact_problem().solve_history(loads, &self.params(), observer).map(|found| {
+            let History { solution, residual: left } = found;
+            residual = Some(left);
+            solution
+        });
+        Ok(Solved { residual, ..self.solved(result, started)? })
     }
 
     /// The problem as a row of a sweep, with `kernel`, which is the kernel of this problem.
@@ -151,6 +170,9 @@ impl<'a> ProblemSetup<'a> {
     /// The cost of the solve by `plan`, with the flow if it is asked for.
     pub(crate) fn cost(&self, plan: &Plan<'_>) -> Cost {
         let cost = plan.cost();
+        // Loads of 0 take nothing.
+        let n_loads = self.contact.history.iter().filter(|load| **load > 0.0).count().max(1) as f64;
+        let cost = Cost { cpu_seconds: cost.cpu_seconds.map(|seconds| n_loads * seconds), ..cost };
         if !self.contact.keys.leakage {
             return cost;
         }
@@ -226,7 +248,7 @@ impl<'a> ProblemSetup<'a> {
             }
             None => (None, failure),
         };
-        Solved { problem: self, solution, failure, flow, shear: None, warnings: self.warnings(), wall }
+        Solved { problem: self, solution, failure, residual: None, flow, shear: None, warnings: self.warnings(), wall }
     }
 
     /// The solver's refusal in SI units.
@@ -239,8 +261,8 @@ impl<'a> Solved<'a> {
     /// The parts of the solution, without the problem.
     #[must_use]
     pub fn into_parts(self) -> SolvedParts<'a> {
-        let Self { solution, failure, flow, shear, warnings, wall, .. } = self;
-        SolvedParts { solution, failure, flow, shear, warnings, wall }
+        let Self { solution, failure, residual, flow, shear, warnings, wall, .. } = self;
+        SolvedParts { solution, failure, residual, flow, shear, warnings, wall }
     }
 
     /// Number of warnings that were known before the solve.
@@ -292,8 +314,8 @@ impl<'a> Solved<'a> {
         let waves = surface.wave_file().map(AsRef::as_ref);
         let (flow, shear) = (self.flow.as_ref(), self.shear.as_ref());
         let (warnings, origin) = (&self.warnings[..], surface.origin.as_ref());
-        let (surface, solution) = (&surface.keys, &self.solution);
-        ResultFiles { surface, map, waves, contact, solution, flow, shear, warnings, origin }
+        let (surface, solution, residual) = (&surface.keys, &self.solution, self.residual.as_ref());
+        ResultFiles { surface, map, waves, contact, solution, residual, flow, shear, warnings, origin }
     }
 }
 

@@ -38,10 +38,11 @@ pub(crate) struct StudyArgs {
 
 /// Hides the keys that a study has other flags for, and those of surfaces that are no map.
 fn without_loads(arg: Arg) -> Arg {
-    const HIDDEN: [&str; 12] = [
+    const HIDDEN: [&str; 13] = [
         "pressure",
         "penetration",
         "force",
+        "history",
         "area_error",
         "output_grid",
         "border_level",

@@ -10,7 +10,7 @@ use super::rows::TREATMENT;
 const OF_HALF_SPACE: [&str; 4] = ["penetration", "contact_stiffness", "contact_conductance", "conductance"];
 
 /// Results that do not depend on the size of the map: key, unit, and key of the error of the mesh.
-const RESULTS: [(&str, &str, Option<&str>); 11] = [
+const RESULTS: [(&str, &str, Option<&str>); 12] = [
     ("area_fraction", "", Some("area_fraction_error")),
     ("penetration", "m", Some("penetration_error_bar")),
     ("mean_gap", "m", Some("mean_gap_error")),
@@ -19,6 +19,7 @@ const RESULTS: [(&str, &str, Option<&str>); 11] = [
     ("contact_stiffness", "Pa/m", None),
     ("contact_conductance", "1/m", Some("contact_conductance_error")),
     ("conductance", "W/(m² K) or S/m²", Some("conductance_error")),
+    ("mean_inverse_gap", "1/m", None),
     ("plastic_area_fraction", "", Some("plastic_area_fraction_error")),
     ("permeance_x", "m³", Some("permeance_error_x")),
     ("permeance_y", "m³", Some("permeance_error_y")),

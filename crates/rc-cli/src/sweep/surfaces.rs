@@ -18,8 +18,7 @@ use crate::run::threads;
 use crate::scene::keys::{ContactKeys, RunKeys, Scene};
 use crate::scene::resolve::{self, ContactSetup};
 use crate::scene::surface::{Source, SurfaceSetup};
-use crate::scene::written;
-use crate::scene::{features, like};
+use crate::scene::{features, like, written};
 use crate::solve::memory_factor;
 
 /// One surface with its loads.
@@ -420,11 +419,12 @@ fn loads(args: &SweepArgs, control: ControlKind, keys: &ContactKeys) -> Result<V
         ControlKind::Pressure => (&args.pressures, keys.pressure),
         ControlKind::Penetration => (&args.penetrations, keys.penetration),
     };
-    match (list, own, keys.force) {
-        (Some(Loads(values)), ..) => Ok(values.clone()),
-        (None, Some(value), _) => Ok(vec![value]),
-        (None, None, Some(_)) => Ok(Vec::new()),
-        (None, None, None) => Err(CliError::input(format_args!("{}: must be given", control.key()))),
+    match (list, own) {
+        (Some(Loads(values)), _) => Ok(values.clone()),
+        (None, Some(value)) => Ok(vec![value]),
+        // A history is refused where its scene is checked.
+        (None, None) if keys.force.is_some() || keys.history.is_some() => Ok(Vec::new()),
+        (None, None) => Err(CliError::input(format_args!("{}: must be given", control.key()))),
     }
 }
 

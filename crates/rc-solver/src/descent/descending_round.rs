@@ -52,9 +52,8 @@ impl Descent<'_> {
             // Directions are conjugate only after a step to the minimum.
             self.start_afresh();
         }
-        let round = self.round(1, sums, observer);
-        self.plain.rounds = self.plain.rounds.saturating_sub(1);
-        let Ok(after) = round else {
+        let is_plain = self.plain.rounds > 0;
+        let Ok(after) = self.round(1, sums, observer) else {
             (self.pressure, self.gap) = before;
             return Err(Stopped);
         };
@@ -64,11 +63,12 @@ impl Descent<'_> {
             part = self.best_part(&before.0, &before.1, zero_gap);
             has_risen |= part < ENOUGH;
         }
+        self.plain.rounds = self.plain.rounds.saturating_sub(1);
         if !has_risen {
             self.step_factor = (LONGER * self.step_factor).min(1.0);
             return Ok(after);
         }
-        self.shorten(part);
+        self.shorten(part, is_plain);
         for (new, old) in [(&mut self.pressure, &before.0), (&mut self.gap, &before.1)] {
             let len = self.layout.len();
             parallel::for_each(new.chunks_mut(len).zip(old.chunks(len)), |(new, old)| {
@@ -84,8 +84,8 @@ impl Descent<'_> {
     }
 
     /// What follows a round of which this part lowers the energy most.
-    fn shorten(&mut self, part: f64) {
-        if part == 0.0 && self.plain.rounds == 0 {
+    fn shorten(&mut self, part: f64, is_plain: bool) {
+        if part == 0.0 && !is_plain {
             self.plain.next = (2 * self.plain.next).clamp(PLAIN[0], PLAIN[1]);
             self.plain.rounds = self.plain.next;
             self.step_factor = 1.0;

@@ -39,6 +39,8 @@ pub enum Feature {
     Penetration,
     /// A hardness.
     Hardness,
+    /// Several loads one after the other, with the plastic flow of each.
+    History,
     /// A flat surface.
     Flat,
     /// Heights that are known only on a grid.
@@ -78,7 +80,7 @@ pub enum Feature {
 }
 
 use Feature::{
-    AreaError, BorderLevel, Checkpoint, Coating, DryRun, Flat, FreeBorders, Gradient, Hardness, HeightMap,
+    AreaError, BorderLevel, Checkpoint, Coating, DryRun, Flat, FreeBorders, Gradient, Hardness, HeightMap, History,
     KernelFunction, LagOnGrid, Layer, Leakage, Line, OblongElements, OblongGrid, OtherSolid, OwnKernel, OwnOperator,
     Penetration, Ranks, Shear, Sliding, Spectral, Sweep, UnevenGrid, Watch,
 };
@@ -110,7 +112,7 @@ const DIVIDED: Not = Some("only the adaptive method runs on several ranks");
 const TANGENTIAL: &str = "its response to tangential tractions is not known";
 
 /// The rows of the table.
-const ROWS: [Row; 28] = [
+const ROWS: [Row; 29] = [
     (Spectral, "kernel", "the kernel spectral", [SPECTRAL, None, OF_LOVE]),
     (OwnKernel, "kernel", "a kernel without a split by scale", [NO_FORM, None, OF_LOVE]),
     (OtherSolid, "kernel", "another solid with a split by scale", [None, None, OF_LOVE]),
@@ -121,6 +123,7 @@ const ROWS: [Row; 28] = [
     (FreeBorders, "boundary", "free borders", [None, None, Some("it solves on a periodic cell only")]),
     (Penetration, "penetration", "a given penetration", ALL),
     (Hardness, "hardness", "a hardness", [None, None, Some("its pressures have no upper bound")]),
+    (History, "history", "a history of loads", [None, None, Some("its pressures have no upper bound")]),
     (Flat, "heights", "a flat surface", [Some("a flat surface needs no adaptive mesh"), None, None]),
     (HeightMap, "heights", "a height map", ALL),
     (
@@ -147,12 +150,18 @@ const ROWS: [Row; 28] = [
 ];
 
 /// Features that exclude each other with every method. The message names the key of the first.
-const PAIRS: [(Feature, Feature, &str); 45] = [
+const PAIRS: [(Feature, Feature, &str); 51] = [
     (Spectral, FreeBorders, "its waves are periodic"),
     (FreeBorders, KernelFunction, "the function describes a periodic cell"),
     (FreeBorders, Layer, "the response of a layer is known in a periodic cell only"),
     (Layer, KernelFunction, "the function already describes the solid"),
     (Hardness, OwnOperator, "its pressures have no upper bound"),
+    (History, Penetration, "its loads are pressures"),
+    (History, Sliding, "plastic flow is of a contact at rest"),
+    (History, BorderLevel, "plastic flow is known on the elements of the grid only"),
+    (History, AreaError, "its loads follow each other on one grid (give grid instead)"),
+    (History, Checkpoint, "it is of one load only"),
+    (History, Sweep, "the rows of a sweep are independent of each other"),
     (BorderLevel, HeightMap, "a map has no heights between its points (resample it on a finer grid instead)"),
     (BorderLevel, OblongGrid, "it divides square grids only"),
     (BorderLevel, UnevenGrid, "it needs a small number times a large power of 2, such as 1024 or 1536 elements"),

@@ -1,7 +1,7 @@
 //! Friction of a sliding contact, from its pressure and heights.
 
 use rayon::prelude::*;
-use rc_core::{DVec2, Field, Kernel};
+use rc_core::{DVec2, Field, Grid, Kernel};
 use rc_fft::half_plane_values;
 
 use crate::descent::info::{Friction, GridSolution, SolveInfo, Status};
@@ -10,6 +10,12 @@ use crate::sliding::newton::Work;
 /// 95 % error of a friction coefficient, for each unit of its difference to that of the displacement, where there is no
 /// coarser grid to compare with.
 const ALONE: f64 = 5.0;
+
+/// 95 % error of a friction coefficient, for each unit of its change by losses as on a grid twice as fine.
+///
+/// Elements of uniform pressure have steps, whose waves lose more than those of a smooth pressure. For lags below an
+/// element this is an error of the first order in their size, so that twice the change is expected.
+const OF_FINER: f64 = 2.5;
 
 /// Sums over waves, per nominal area and in E*.
 #[derive(Clone, Copy, Default)]
@@ -22,6 +28,8 @@ pub(crate) struct Sums {
     pub(crate) slope: f64,
     /// Part of the friction of full contact that elements miss: their symbol is smaller by (q h)²/24.
     pub(crate) missed: f64,
+    /// What the loss of waves on this grid has beyond their loss on one twice as fine, times q |p|².
+    pub(crate) of_finer: f64,
     /// Maximum of |Im L|/Re L.
     pub(crate) loss_tangent: f64,
 }
@@ -33,6 +41,7 @@ impl Sums {
             of_displacement: self.of_displacement + other.of_displacement,
             slope: self.slope + other.slope,
             missed: self.missed + other.missed,
+            of_finer: self.of_finer + other.of_finer,
             loss_tangent: self.loss_tangent.max(other.loss_tangent),
         }
     }
@@ -50,14 +59,26 @@ pub(crate) fn coefficient(pressure: &Field, heights: &Field, kernel: &dyn Kernel
 /// -⟨p ∂u⟩ is the same in the limit of small elements. On a grid the two differ, mostly by more than either is wrong.
 pub(crate) fn friction(solution: &GridSolution, heights: &Field, kernel: &dyn Kernel, work: Work) -> Option<Friction> {
     let sums = sums(&solution.pressure, heights, kernel)?;
-    // A kernel of waves has no error inside contacts.
-    let is_exact = kernel.edge_bias(heights.grid()).per_difference == 0.0;
-    Some(finished((&solution.info, solution.status, is_exact), &sums, kernel.sliding_velocity()?, work))
+    Some(finished(
+        (&solution.info, solution.status, is_exact(kernel, heights.grid())),
+        &sums,
+        kernel.sliding_velocity()?,
+        work,
+    ))
+}
+
+/// Whether `kernel` is one of waves, without an error inside contacts.
+fn is_exact(kernel: &dyn Kernel, grid: Grid) -> bool {
+    kernel.edge_bias(grid).per_difference == 0.0
 }
 
 fn sums(pressure: &Field, heights: &Field, kernel: &dyn Kernel) -> Option<Sums> {
     let (velocity, grid) = (kernel.sliding_velocity()?, heights.grid());
     let symbol = kernel.sliding_symbol(grid)?;
+    // A kernel of waves has the same loss on all grids.
+    let finer = grid.with_elements(2 * grid.nx(), 2 * grid.ny()).ok().filter(|_| !is_exact(kernel, grid));
+    let finer =
+        finer.and_then(|finer| Some((kernel.symbol(grid), kernel.symbol(finer), kernel.sliding_symbol(finer)?)));
     let along = velocity.normalize_or(DVec2::X);
     let (nx, ny) = (grid.nx() as i64, grid.ny() as i64);
     let waves = |field: &Field| half_plane_values(field, field.mean(), |wave| wave);
@@ -77,12 +98,17 @@ fn sums(pressure: &Field, heights: &Field, kernel: &dyn Kernel) -> Option<Sums> 
         let count = if kx == 0 || is_half[0] { 1.0 } else { 2.0 };
         let (p, h, factor) = (pressures[place], heights[place], symbol(kx, ky));
         let [q, across] = [q.dot(along), q.dot(along.perp())];
+        let change = finer.as_ref().map_or(0.0, |(rest, rest_of_finer, finer)| {
+            let [x, y] = [kx, ky].map(|k| k.unsigned_abs() as usize);
+            factor.im - finer(kx, ky).im * rest(x, y) / rest_of_finer(x, y)
+        });
         // -Re(conj(p) i q h) = q Im(conj(p) h)
         let product = (p.conj() * h).im;
         Sums {
             of_heights: [q, across].map(|q| scale * count * q * product),
             of_displacement: scale * count * q * factor.im * p.norm_sqr(),
             slope: scale * count * q * q * h.norm_sqr() / factor.re,
+            of_finer: scale * count * q * change * p.norm_sqr(),
             missed: scale * count * q * product * (whole * spacing).length_squared() / 24.0,
             loss_tangent: factor.im.abs() / factor.re,
         }
@@ -119,6 +145,7 @@ pub(crate) fn finished(
         (_, Some(coarser)) => (coefficient - of_displacement).hypot(coefficient - coarser),
         (_, None) => ALONE * (coefficient - of_displacement).abs(),
     };
+    let of_grid = of_grid.hypot(OF_FINER * sums.of_finer / load);
     // Full contact is not iterated.
     let error = if status == Status::FullContact { of_grid } else { of_grid.hypot(iteration) };
     Friction {

@@ -11,7 +11,7 @@ use crate::descent::gmres::{self, ActiveElements, LinearSystem};
 use crate::descent::operators::PreconditionedOperator;
 use crate::descent::outcome::Outcome;
 use crate::descent::run::{DescentObserver, Goal};
-use crate::descent::state::{Descent, Follows};
+use crate::descent::state::{Descent, Follows, PlainRounds};
 use crate::descent::stop::Stopped;
 use crate::descent::sums::GapSums;
 
@@ -193,6 +193,8 @@ impl<'a> SlidingDescent<'a> {
             }
             let wanted = INNER * self.descent.error(&sums);
             self.exchange();
+            // What rounds did under other heights does not count.
+            (self.descent.step_factor, self.descent.plain) = (1.0, PlainRounds::default());
             for _ in 0..rounds {
                 self.work.storage_rounds += 1;
                 let round = self.descent.descending_round(&sums, observer);

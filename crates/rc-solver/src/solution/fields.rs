@@ -50,6 +50,21 @@ impl Solution<'_> {
         self.plastic_gap.get_or_init(|| self.collect(self.grid(), |take| self.plastic_gap_rows(take)))
     }
 
+    /// ⟨1/(g + m)⟩ over the nominal area, in 1/λ: the conductance of a gas in the gap g, for conductivity 1.
+    ///
+    /// The jump distance m > 0 (in λ) stands for the jumps of temperature at both surfaces. In contact g is exactly 0.
+    /// The mean is over the elements of the grid. It costs as much as [`Solution::gap_rows`].
+    #[must_use]
+    pub fn mean_inverse_gap(&self, jump_distance: f64) -> f64 {
+        let mut sum = 0.0;
+        let Ok(()) = self.part_rows(GapPart::Free, Rows::on_grid(Receiver::First), |_, rows| {
+            sum += rows.iter().map(|gap| (gap + jump_distance).recip()).sum::<f64>();
+            Ok::<_, Infallible>(())
+        });
+        // The first rank has all rows.
+        self.ranks().concatenate(vec![sum]).iter().sum::<f64>() / self.grid().len() as f64
+    }
+
     /// The displacement v on the grid, in λ. Its mean is zero on the periodic half-space.
     ///
     /// The first call takes one application of L.

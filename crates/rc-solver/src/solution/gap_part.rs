@@ -9,6 +9,8 @@ use rc_core::Field;
 pub(crate) enum GapPart {
     /// The open gap. It is zero where plastic flow has removed an overlap, and where the tolerance has left one.
     Open,
+    /// The open one out of contact. It is exactly zero where there is a pressure.
+    Free,
     /// The overlap that plastic flow has removed, positive.
     Plastic,
     /// The open one less the plastic one: negative where the overlap was removed.
@@ -16,10 +18,16 @@ pub(crate) enum GapPart {
 }
 
 impl GapPart {
+    /// Whether this part of a contact with this hardness depends on the pressure.
+    pub(crate) fn needs_pressure(self, hardness: f64) -> bool {
+        hardness.is_finite() || self == Self::Free
+    }
+
     /// This part of `gap` where the pressure is `pressure`, of at most the `hardness`.
     pub(crate) fn of(self, gap: f64, pressure: f64, hardness: f64) -> f64 {
         match (self, pressure >= hardness) {
-            (Self::Open, _) => gap.max(0.0),
+            (Self::Free, _) if pressure > 0.0 => 0.0,
+            (Self::Open | Self::Free, _) => gap.max(0.0),
             (Self::Both, _) => gap,
             (Self::Plastic, true) => (-gap).max(0.0),
             (Self::Plastic, false) => 0.0,

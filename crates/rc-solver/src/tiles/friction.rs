@@ -44,6 +44,7 @@ impl SlidingContact<'_> {
             of_displacement: self.of_displacement()?,
             slope,
             missed: 0.0,
+            of_finer: 0.0,
             loss_tangent,
         })
     }

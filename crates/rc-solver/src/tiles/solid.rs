@@ -59,10 +59,10 @@ impl Solid {
         allowed: f64,
     ) -> Result<Self, AdaptiveError> {
         let most = UNRESOLVED.into_iter().rev().find(|part| *part <= allowed).unwrap_or(UNRESOLVED[0]);
-        let deviates_below = split.deviates_below(most);
-        if deviates_below == 0.0 {
+        if split.deviates_below(0.0) == 0.0 && kernel.uniform_displacement().is_none() {
             return Ok(base.into());
         }
+        let deviates_below = split.deviates_below(most);
         let grid = base.grid();
         let resolved = if base.is_free() { 0.0 } else { RESOLVED * PI / grid.spacing().max_element() };
         // NaN is not resolved.

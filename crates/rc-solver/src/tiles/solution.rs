@@ -236,7 +236,7 @@ impl Solved for TileSolution<'_> {
     fn gap_rows(&self, part: GapPart, rows: Rows, take: TakeRows<'_>) -> Result<(), Halted> {
         let (heights, offset) = (&self.data.heights, self.h_max - self.info.penetration);
         let grid = if rows.finest { self.finest } else { self.grid };
-        let of_pressure = self.hardness.is_finite().then(|| self.on_one_size(rows.finest));
+        let of_pressure = part.needs_pressure(self.hardness).then(|| self.on_one_size(rows.finest));
         self.rows_of_displacement(rows, &mut |first, displacement| {
             let mut rows = heights.row_of_tiles(sides_of(grid), first / TILE);
             for (h, v) in rows.iter_mut().zip(displacement) {
@@ -247,7 +247,6 @@ impl Solved for TileSolution<'_> {
                     *g = part.of(*g, p, self.hardness);
                 }
             } else {
-                // Without a hardness, the pressure does not matter.
                 for gap in &mut rows {
                     *gap = part.of(*gap, 0.0, f64::INFINITY);
                 }

@@ -24,7 +24,7 @@ fn solve<'a>(
 }
 
 /// Waves up to `n` per cell with the amplitudes of a self-affine surface.
-fn rough(seed: usize, side: usize, n: i32) -> Field {
+pub(crate) fn rough(seed: usize, side: usize, n: i32) -> Field {
     let waves: Vec<(f64, f64, f64, f64)> = (-n..=n)
         .flat_map(|ky| (0..=n).map(move |kx| (kx, ky)))
         .filter(|&(kx, ky)| (kx, ky) != (0, 0) && kx * kx + ky * ky <= n * n)

@@ -2,11 +2,13 @@
 
 mod capabilities;
 mod error_bars;
+mod gas;
 mod gauss_seidel;
 mod gradient;
 mod handover;
 mod hardness;
 mod hardness_of_solids;
+mod history;
 mod observers;
 mod operators;
 mod over_ranks;

@@ -13,6 +13,7 @@ use super::sliding::SlidingSolid;
 use super::{elastic_layer, shear, sliding};
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
+use crate::scene::history::HistorySpec;
 use crate::scene::keys::{ContactKeys, KernelName};
 use crate::scene::values::ToleranceSpec;
 use crate::scene::{features, file};
@@ -26,6 +27,10 @@ pub struct ContactSetup {
     pub control: Control,
     /// Maximum pressure in E*; infinite for an elastic contact.
     pub hardness: f64,
+    /// Mean pressures in E* that follow each other; empty for a single load.
+    ///
+    /// `control` is the last of them above 0.
+    pub history: Vec<f64>,
     /// Discretisation.
     pub kernel: KernelName,
     /// The boundary, which is what is beyond the heights.
@@ -114,6 +119,8 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     let units = Units::new(cell, elasticity(&keys)?);
     let control = control(&keys, units)?;
     let hardness = hardness(&keys, (control, units))?;
+    keys.jump_distance.map_or(Ok(0.0), |jump| positive("jump_distance", "m", Some(jump)))?;
+    let history = keys.history.iter().flat_map(|HistorySpec(loads)| loads).map(|load| units.pressure(*load)).collect();
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
     features::check(&keys, None)?;
     let boundary = keys.boundary.unwrap_or_default();
@@ -131,6 +138,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
         units,
         control,
         hardness,
+        history,
         kernel,
         boundary,
         layer,
@@ -145,6 +153,9 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
 }
 
 fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
+    if let Some(HistorySpec(loads)) = &keys.history {
+        return Ok(Control::pascals(last_of_history(keys, loads)?, units));
+    }
     match (keys.pressure, keys.penetration, keys.force) {
         (Some(pressure), None, None) => Ok(Control::pascals(positive("pressure", "Pa", Some(pressure))?, units)),
         (None, Some(depth), None) => Ok(Control::metres(positive("penetration", "m", Some(depth))?, units)),
@@ -154,6 +165,25 @@ fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
         }
         _ => Err(CliError::input("give exactly one of pressure (Pa), penetration (m) and force (N)")),
     }
+}
+
+/// The last load (Pa) of a history that is above 0.
+fn last_of_history(keys: &ContactKeys, loads: &[f64]) -> Result<f64, CliError> {
+    if keys.n_loads() > 1 {
+        return Err(CliError::input("history: has the loads; omit pressure, penetration and force"));
+    }
+    if keys.hardness.is_none() {
+        return Err(CliError::input(
+            "history: an elastic contact keeps nothing of earlier loads; give hardness too, or pressure instead",
+        ));
+    }
+    if let Some(wrong) = loads.iter().find(|load| !(**load >= 0.0 && load.is_finite())) {
+        return Err(CliError::input(format_args!(
+            "history: each load must be finite and at least 0 (Pa), not {wrong}"
+        )));
+    }
+    let last = loads.iter().rev().copied().find(|load| *load > 0.0);
+    last.ok_or_else(|| CliError::input("history: one of the loads must be above 0 (Pa), such as 1e7,0"))
 }
 
 /// The mean pressure (Pa) of a force (N) on a cell or patch.
@@ -186,8 +216,9 @@ fn film(keys: ContactKeys) -> Result<ContactKeys, CliError> {
 fn hardness(keys: &ContactKeys, (control, units): (Control, Units)) -> Result<f64, CliError> {
     let Some(given) = keys.hardness else { return Ok(f64::INFINITY) };
     let given = positive("hardness", "Pa", Some(given))?;
+    let of_history = keys.history.iter().flat_map(|HistorySpec(loads)| loads).copied().reduce(f64::max);
     let pressure = match control {
-        Control::MeanPressure(mean) => Some(keys.pressure.unwrap_or_else(|| units.pascals(mean))),
+        Control::MeanPressure(mean) => Some(of_history.or(keys.pressure).unwrap_or_else(|| units.pascals(mean))),
         Control::Penetration(_) => None,
     };
     if let Some(pressure) = pressure.filter(|pressure| *pressure >= given) {
@@ -291,6 +322,8 @@ mod tests {
             ("tolerance = 1.0", "tolerance"),
             ("tolerance = 0.0", "tolerance"),
             ("hardness = 0.0", "hardness"),
+            ("jump_distance = 0.0", "jump_distance"),
+            ("jump_distance = nan", "jump_distance"),
             ("hardness = nan", "hardness"),
             ("hardness = inf", "hardness"),
             ("hardness = 1.0", "hardness"),
@@ -312,8 +345,7 @@ mod tests {
             ("layer_thickness = 1e-3\ne_star = 1e9\nlayer_poisson = -1.0", "layer_poisson"),
             ("layer_thickness = 1e-3\npoisson = 0.4\nlayer_poisson = 0.3", "layer_poisson"),
             ("layer_poisson = 0.3", "layer_poisson"),
-            ("layer_thickness = 1e-3\nmethod = \"adaptive\"", "method"),
-            ("layer_thickness = 1e-3\nborder_level = 1", "border_level"),
+            ("layer_thickness = 1e-3\nmethod = \"gauss-seidel\"", "method"),
             ("layer_thickness = 1e-3\nkernel = \"own\"", "layer_thickness"),
         ];
         assert_named(&cases);

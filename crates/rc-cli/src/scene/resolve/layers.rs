@@ -73,8 +73,13 @@ fn lower_layer(path: &Path) -> Result<Scene, CliError> {
 }
 
 fn two_loads(contact: &ContactKeys) -> String {
-    let loads = [("pressure", contact.pressure), ("penetration", contact.penetration), ("force", contact.force)];
-    let given: Vec<&str> = loads.iter().filter(|(_, value)| value.is_some()).map(|(key, _)| *key).collect();
+    let loads = [
+        ("pressure", contact.pressure.is_some()),
+        ("penetration", contact.penetration.is_some()),
+        ("force", contact.force.is_some()),
+        ("history", contact.history.is_some()),
+    ];
+    let given: Vec<&str> = loads.iter().filter(|(_, is_given)| *is_given).map(|(key, _)| *key).collect();
     format!("both {} are given; give exactly one", given.join(" and "))
 }
 

@@ -47,8 +47,9 @@ impl SlidingEdges {
             let along = |i: usize, n: i64| within(factor * n as f64 / (2.0 * chords[i]), n);
             [modulus(across(nx), along(1, ny)), modulus(along(0, nx), across(ny))]
         };
-        // The shortest waves of a grid are real. On one twice as fine they are not.
-        let finer = Grid::new(2 * grid.nx(), 2 * grid.ny()).ok()?;
+        // The shortest waves of a grid are real. On one twice as fine they are not. The largest grids have no finer one.
+        let finer = grid.with_elements(2 * grid.nx(), 2 * grid.ny());
+        let (finer, nx, ny) = finer.map_or((grid, nx / 2, ny / 2), |finer| (finer, nx, ny));
         let (slides, rest) = (kernel.sliding_symbol(finer)?, kernel.symbol(finer));
         let shortest = [(nx / 2, 0), (0, ny / 2)].map(|(kx, ky)| match (kx, ky) {
             (0, 0) => Complex64::ONE,
