@@ -490,6 +490,47 @@ class Result:
         density, area = _core.stress_distribution(pressure, self.e_star, edges.tolist(), self.area_fraction)
         return StressDistribution(edges, density, area)
 
+    def gradient(self, name: str, fixed: str | None = None) -> Floats:
+        """Derivatives of a number with respect to the height of each element, shape (ny, nx).
+
+        The elements in contact are held fixed, so the derivatives are exact unless an element is just about to touch or to
+        part. Their errors are those of the pressure. The penetration is measured from the highest element, which therefore
+        has a derivative of its own; of several highest elements, the first has it. A call takes one linear solve.
+
+        Parameters
+        ----------
+        name : {"elastic_energy", "mean_pressure", "penetration", "mean_gap"}
+            The number. The unit of the derivatives is its SI unit per m.
+        fixed : {"pressure", "penetration"}, optional
+            What stays the same. Default: what the solve was given.
+
+        Raises
+        ------
+        ValueError
+            Unless the contact is elastic, in a periodic cell, and solved with ``method="uniform"``.
+        """
+        return self._source.gradient(name, fixed)
+
+    def gradient_of(self, df_dp: Any, fixed: str | None = None) -> Floats:
+        """Derivatives with respect to the heights of any function f of the pressures, in the unit of f per m.
+
+        It is :meth:`gradient` for functions of your own: the product of ``df_dp`` with the derivatives of the pressures,
+        for the reverse mode of automatic differentiation.
+
+        Parameters
+        ----------
+        df_dp : array
+            Derivatives of f with respect to the pressure of each element (1/Pa), shape (ny, nx). Those out of contact do not
+            count.
+        fixed : {"pressure", "penetration"}, optional
+            As in :meth:`gradient`.
+        """
+        derivatives = np.ascontiguousarray(df_dp, dtype=np.float64)
+        nx, ny = self.grid
+        if derivatives.shape != (ny, nx):
+            raise ValueError(f"df_dp: must have the shape of the pressure, {(ny, nx)}, not {derivatives.shape}")
+        return self._source.gradient_of(derivatives, fixed)
+
     def save(self, folder: Path) -> None:
         """Write the files of ``rc solve --out``: summary, scene, fields and a picture of the contact."""
         self._source.save(os.fspath(folder))

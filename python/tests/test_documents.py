@@ -1,5 +1,6 @@
 """Python in the documents runs."""
 
+import importlib.util
 import pathlib
 import re
 import shutil
@@ -23,7 +24,7 @@ def test_python_in_a_document_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     for kind, code in blocks(name):
-        if not kind:
+        if not kind or (kind == "torch" and importlib.util.find_spec(kind) is not None):
             exec(compile(code, name, "exec"), names)
 
 
@@ -32,12 +33,12 @@ def test_the_same_problem_has_the_same_numbers_in_three_programs():
     names: dict[str, object] = {}
     areas, pressures = {}, {}
     for kind, code in blocks("docs/python.md"):
-        if not kind:
+        if kind not in ("roughcontact", "tamaas", "ContactMechanics"):
             continue
         try:
             exec(compile(code, "python.md", "exec"), names)
         except ModuleNotFoundError as missing:
-            assert kind in ("tamaas", "ContactMechanics"), missing
+            assert kind != "roughcontact", missing
             continue
         areas[kind], pressures[kind] = names["area"], names["max_pressure"]
     assert "roughcontact" in areas

@@ -14,7 +14,7 @@ use rc_cli::scene::resolve::ContactSetup;
 use rc_cli::scene::wave_file::WaveFile;
 use rc_cli::solve::{MapHeights, ResultFiles, SolvedFlow, SolvedShear};
 use rc_core::{Field, Grid};
-use rc_solver::{Solution, Status};
+use rc_solver::{Feature, GradientError, Held, Quantity, Solution, Status, refusal};
 use rc_sweep::{MapOrigin, Summary, Warning};
 
 use crate::arrays::{self, Heights};
@@ -236,6 +236,34 @@ impl Solved {
         self.array(py, self.side(), Solution::displacement)
     }
 
+    /// Derivatives of a number of the summary with respect to the heights, in its SI unit per m, shape (ny, nx).
+    ///
+    /// `held` is what stays the same, by default what the solve was given.
+    fn gradient<'py>(&self, py: Python<'py>, name: &str, held: Option<&str>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let units = self.found.parts.contact.units;
+        let (quantity, unit) = match name {
+            "elastic_energy" => (Quantity::ElasticEnergy, units.joules(1.0)),
+            "mean_pressure" => (Quantity::MeanPressure, units.pascals(1.0)),
+            "penetration" => (Quantity::Penetration, units.metres(1.0)),
+            "mean_gap" => (Quantity::MeanGap, units.metres(1.0)),
+            other => return Err(no_gradient(other)),
+        };
+        let held = held_of(held)?;
+        self.gradient_by(py, unit / self.side(), move |solution| solution.gradient(quantity, held))
+    }
+
+    /// Derivatives of a function of the pressures (Pa) with respect to the heights (m), from those to the pressures.
+    fn gradient_of<'py>(
+        &self,
+        py: Python<'py>,
+        derivatives: Heights<'py>,
+        held: Option<&str>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (values, held) = (arrays::values_of(&derivatives)?.to_vec(), held_of(held)?);
+        let unit = self.e_star() / self.side();
+        self.gradient_by(py, unit, move |solution| solution.gradient_of(&values, held))
+    }
+
     /// Fluxes along x and y (m²), shape (ny, nx).
     ///
     /// `None` if there is no flow, or the flow was not asked for.
@@ -281,6 +309,23 @@ impl Solved {
 }
 
 impl Solved {
+    /// A gradient, in multiples of `unit`.
+    fn gradient_by<'py>(
+        &self,
+        py: Python<'py>,
+        unit: f64,
+        gradient: impl FnOnce(&Solution<'static>) -> Result<Field, GradientError> + Send + 'static,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        if let Some(refused) =
+            refusal(&[Feature::Gradient, Feature::Shear], None).filter(|_| self.found.parts.shear.is_some())
+        {
+            return Err(bad_input(refused));
+        }
+        let field = self.compute(py, move |found| Ok(in_unit(&gradient(&found.parts.solution)?, unit)))?;
+        let values = field.map_err(|error: GradientError| bad_input(format_args!("gradient: {error}")))?;
+        arrays::array_of(py, self.found.parts.solution.grid(), values)
+    }
+
     /// The caller's heights, if they have not changed since the solve.
     fn map_heights<'a>(&self, heights: &'a Heights<'_>) -> PyResult<MapHeights<'a>> {
         let values = arrays::values_of(heights)?;
@@ -291,6 +336,26 @@ impl Solved {
         }
         Ok(MapHeights::InMetres { grid: arrays::grid_of(heights)?, values })
     }
+}
+
+/// The meaning of the argument `fixed`.
+fn held_of(word: Option<&str>) -> PyResult<Option<Held>> {
+    match word {
+        None => Ok(None),
+        Some("pressure") => Ok(Some(Held::MeanPressure)),
+        Some("penetration") => Ok(Some(Held::Penetration)),
+        Some(other) => Err(bad_input(format_args!("fixed: must be \"pressure\" or \"penetration\", not \"{other}\""))),
+    }
+}
+
+/// The error for the gradient of anything else.
+fn no_gradient(name: &str) -> PyErr {
+    const NAMES: &str = "elastic_energy, mean_pressure, penetration or mean_gap";
+    if name.starts_with("area_fraction") {
+        let why = "the elements in contact are held fixed, so the area does not change";
+        return bad_input(format_args!("gradient: {name} has none, because {why}; choose {NAMES}"));
+    }
+    bad_input(format_args!("gradient: must be that of {NAMES}, not of {name}"))
 }
 
 /// A solve that continues on its own after a signal.

@@ -67,6 +67,8 @@ pub use crate::solution::contact_area::area::ContactArea;
 pub use crate::solution::contact_area::plastic::PlasticContact;
 pub use crate::solution::contact_spots::{ContactSpot, connected_elements};
 pub use crate::solution::gap_distribution::GapDistribution;
+pub use crate::solution::gradient::{Held, Quantity};
+pub use crate::solution::gradient_error::GradientError;
 pub use crate::solution::observables::Observables;
 pub use crate::solution::pressure_statistics::PressureStatistics;
 pub use crate::solution::stress_distribution::StressDistribution;

@@ -14,6 +14,7 @@
 
 pub(crate) mod certificate;
 pub(crate) mod contact_element;
+pub(crate) mod contact_system;
 pub(crate) mod descending_round;
 pub(crate) mod directions;
 pub(crate) mod gap;

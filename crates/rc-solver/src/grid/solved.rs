@@ -7,14 +7,18 @@ use rc_core::{Boundary, EdgeBias, Field, Grid, Kernel, Operator};
 use rc_kernel::Spectral;
 
 use crate::descent::contact_element::ContactElement;
+use crate::descent::contact_system::solve_on_contact;
 use crate::descent::info::{GridSolution, SolveInfo, Status};
+use crate::grid::operators::uniform_operators;
 use crate::grid::solve_with_operator::stiffness_with_operator;
 use crate::grid::stiffness::{contact_stiffness, least_rise};
 use crate::grid::uniform_operator::UniformOperator;
+use crate::problem::capabilities::Feature;
 use crate::problem::kernel::OwnedKernel;
 use crate::problem::support::Support;
 use crate::solution::contact_area::sliding_edges::SlidingEdges;
 use crate::solution::gap_part::GapPart;
+use crate::solution::gradient_error::GradientError;
 use crate::solution::observables::Observables;
 use crate::solution::rows::{Halted, Receiver, Rows, TakeRows};
 use crate::solution::solved::{Counts, Solved};
@@ -144,13 +148,16 @@ pub(crate) struct GridSolved<'a> {
     pub(crate) response: Response<'a>,
     /// The limit of the pressure. Infinite for an elastic contact.
     pub(crate) hardness: f64,
+    /// The highest element. It is the first of several.
+    highest: usize,
 }
 
 impl<'a> GridSolved<'a> {
-    /// The solution for the caller. In an elastic contact, overlaps that the tolerance has left become gaps of zero.
+    /// The solution for the caller, of these heights. In an elastic contact, overlaps that the tolerance has left become
+    /// gaps of zero.
     ///
     /// The certificate holds their size.
-    pub(crate) fn new(mut solution: GridSolution, response: Response<'a>, hardness: f64) -> Self {
+    pub(crate) fn new(mut solution: GridSolution, heights: &Field, response: Response<'a>, hardness: f64) -> Self {
         if hardness.is_infinite() {
             solution.gap.values_mut().par_iter_mut().for_each(|gap| *gap = gap.max(0.0));
         }
@@ -159,7 +166,9 @@ impl<'a> GridSolved<'a> {
         if solution.status == Status::Converged && is_periodic && solution.pressure.min() > 0.0 {
             solution.status = Status::FullContact;
         }
-        Self { solution, response, hardness }
+        let heights = heights.values();
+        let highest = (0..heights.len()).reduce(|best, i| if heights[i] > heights[best] { i } else { best });
+        Self { solution, response, hardness, highest: highest.unwrap_or_default() }
     }
 }
 
@@ -212,6 +221,27 @@ impl Solved for GridSolved<'_> {
         (!is_stiffness).then(|| self.response.conductance(&self.solution))
     }
 
+    fn features(&self) -> Vec<Feature> {
+        let of_solid = match &self.response {
+            Response::Kernel(kernel) if kernel.get().sliding_velocity().is_some() => Some(Feature::Sliding),
+            Response::Operator(_) => Some(Feature::OwnOperator),
+            Response::Kernel(_) | Response::Outlived { .. } => None,
+        };
+        let is_free = self.response.boundary(self.grid()) == Boundary::Free;
+        of_solid.into_iter().chain(is_free.then_some(Feature::FreeBorders)).collect()
+    }
+
+    fn highest(&self) -> Option<usize> {
+        Some(self.highest)
+    }
+
+    fn displaced_by(&self, displacement: &[f64], is_balanced: bool) -> Result<Vec<f64>, GradientError> {
+        let Response::Kernel(kernel) = &self.response else { return Err(GradientError::NoKernel) };
+        let mut operators = uniform_operators(self.grid(), kernel.get());
+        let pressure = self.solution.pressure.values();
+        solve_on_contact(pressure, displacement, is_balanced, &mut operators).map_err(GradientError::Inexact)
+    }
+
     fn stored(&self) -> Option<[&Field; 2]> {
         Some([&self.solution.pressure, &self.solution.gap])
     }
@@ -229,8 +259,8 @@ impl Solved for GridSolved<'_> {
     }
 
     fn into_owned(self: Box<Self>) -> Box<dyn Solved> {
-        let Self { solution, response, hardness } = *self;
+        let Self { solution, response, hardness, highest } = *self;
         let response = response.into_owned(&solution, hardness);
-        Box::new(GridSolved { solution, response, hardness })
+        Box::new(GridSolved { solution, response, hardness, highest })
     }
 }

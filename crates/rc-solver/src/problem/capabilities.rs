@@ -69,6 +69,8 @@ pub enum Feature {
     LagOnGrid,
     /// Friction with partial slip under a shear force.
     Shear,
+    /// Derivatives with respect to the heights.
+    Gradient,
     /// Many loads or surfaces.
     Sweep,
     /// A picture while the solve runs.
@@ -78,7 +80,7 @@ pub enum Feature {
 }
 
 use Feature::{
-    AreaError, BorderLevel, Checkpoint, Coating, DryRun, Flat, FreeBorders, Hardness, HeightMap, History,
+    AreaError, BorderLevel, Checkpoint, Coating, DryRun, Flat, FreeBorders, Gradient, Hardness, HeightMap, History,
     KernelFunction, LagOnGrid, Layer, Leakage, Line, OblongElements, OblongGrid, OtherSolid, OwnKernel, OwnOperator,
     Penetration, Ranks, Shear, Sliding, Spectral, Sweep, UnevenGrid, Watch,
 };
@@ -104,12 +106,13 @@ const NO_TAILS: Not =
     Some("it needs a series of relaxation times, a velocity along x, and a grid that can be halved several times");
 const SYMMETRIC: Not = Some("its procedure needs a symmetric operator");
 const NORMAL: Not = Some("its coefficients are those of normal pressures");
+const OF_GRID: Not = Some("its linear system is solved on a uniform grid");
 const DIVIDED: Not = Some("only the adaptive method runs on several ranks");
 
 const TANGENTIAL: &str = "its response to tangential tractions is not known";
 
 /// The rows of the table.
-const ROWS: [Row; 28] = [
+const ROWS: [Row; 29] = [
     (Spectral, "kernel", "the kernel spectral", [SPECTRAL, None, OF_LOVE]),
     (OwnKernel, "kernel", "a kernel without a split by scale", [NO_FORM, None, OF_LOVE]),
     (OtherSolid, "kernel", "another solid with a split by scale", [None, None, OF_LOVE]),
@@ -140,13 +143,14 @@ const ROWS: [Row; 28] = [
     (Sliding, "speed", "a sliding surface", [None, None, SYMMETRIC]),
     (LagOnGrid, "speed", "a lag that only whole grids have", [NO_TAILS, None, SYMMETRIC]),
     (Shear, "friction", "friction with partial slip", [None, None, NORMAL]),
+    (Gradient, "gradient", "a gradient", [OF_GRID, None, OF_GRID]),
     (Sweep, "sweep", "a sweep", ALL),
     (Watch, "watch", "a picture while it is solved", ALL),
     (DryRun, "dry_run", "a dry run", ALL),
 ];
 
 /// Features that exclude each other with every method. The message names the key of the first.
-const PAIRS: [(Feature, Feature, &str); 46] = [
+const PAIRS: [(Feature, Feature, &str); 51] = [
     (Spectral, FreeBorders, "its waves are periodic"),
     (FreeBorders, KernelFunction, "the function describes a periodic cell"),
     (FreeBorders, Layer, "the response of a layer is known in a periodic cell only"),
@@ -187,6 +191,11 @@ const PAIRS: [(Feature, Feature, &str); 46] = [
     (Shear, Checkpoint, "it solves two contacts, which would share the file"),
     (Shear, Sweep, "rc shear makes the shear curves of a finished sweep"),
     (Shear, DryRun, "it solves two contacts (omit friction for the cost of each)"),
+    (Gradient, FreeBorders, "its linear system is that of a periodic cell"),
+    (Gradient, OwnOperator, "the preconditioner of its linear system is that of a kernel"),
+    (Gradient, Hardness, "plastic elements are not in its linear system"),
+    (Gradient, Sliding, "its linear system must be symmetric"),
+    (Gradient, Shear, "derivatives of tractions are not known"),
     (Watch, DryRun, "a dry run has no contact to show"),
     (Watch, Ranks, "no rank has the whole contact while it is solved"),
     (Leakage, Ranks, "the flow is not solved over ranks"),

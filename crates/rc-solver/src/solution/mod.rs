@@ -6,6 +6,8 @@ pub(crate) mod elements;
 pub(crate) mod fields;
 pub(crate) mod gap_distribution;
 pub(crate) mod gap_part;
+pub(crate) mod gradient;
+pub(crate) mod gradient_error;
 pub(crate) mod observables;
 pub(crate) mod pressure_statistics;
 pub(crate) mod rows;

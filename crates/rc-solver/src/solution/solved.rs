@@ -5,7 +5,9 @@ use rc_core::{Field, Grid};
 
 use crate::descent::contact_element::ContactElement;
 use crate::descent::info::{SolveInfo, Status};
+use crate::problem::capabilities::Feature;
 use crate::solution::gap_part::GapPart;
+use crate::solution::gradient_error::GradientError;
 use crate::solution::observables::Observables;
 use crate::solution::rows::{Halted, Receiver, Rows, TakeRows};
 
@@ -64,6 +66,23 @@ pub(crate) trait Solved: Send + Sync {
     ///
     /// Plastic elements are part of the spots, and a layer is replaced by the half-space. It is infinite in full contact.
     fn conductance(&self) -> Option<f64>;
+
+    /// The features of its solid that exclude a gradient.
+    fn features(&self) -> Vec<Feature> {
+        Vec::new()
+    }
+
+    /// The highest element of the grid, if it is known.
+    fn highest(&self) -> Option<usize> {
+        None
+    }
+
+    /// The pressure on the contact that displaces it by these values, and zero elsewhere.
+    ///
+    /// If it `is_balanced`, its mean is zero, and the values count up to a constant.
+    fn displaced_by(&self, _displacement: &[f64], _is_balanced: bool) -> Result<Vec<f64>, GradientError> {
+        Err(GradientError::NoKernel)
+    }
 
     /// Pressure and gap before plastic flow, if they are stored whole.
     fn stored(&self) -> Option<[&Field; 2]>;

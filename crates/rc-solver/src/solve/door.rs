@@ -173,7 +173,7 @@ pub fn solve_with_operator<'a>(
     let asked = Bounds::from(control);
     let how = HowSolved { method: Method::Uniform, reason, bound, kernel: "operator", asked };
     let summit = Summit::on_grid(source.surface(), (&heights, heights.max()), Boundary::Periodic);
-    let solved = GridSolved::new(solution, Response::Operator(operator), f64::INFINITY);
+    let solved = GridSolved::new(solution, &heights, Response::Operator(operator), f64::INFINITY);
     let solution = Solution::new(how, summit, Box::new(solved));
     if solution.status() == Status::NotConverged { Err(plan::not_converged(solution)) } else { Ok(solution) }
 }

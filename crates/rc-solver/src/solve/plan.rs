@@ -124,7 +124,7 @@ impl<'a> Plan<'a> {
         };
         let how = how(method, reason);
         let summit = Summit::on_grid(problem.heights.surface(), (heights, heights.max()), problem.boundary());
-        let solved = GridSolved::new(solution, Response::Kernel(problem.kernel), problem.hardness);
+        let solved = GridSolved::new(solution, heights, Response::Kernel(problem.kernel), problem.hardness);
         let solution = Solution::new(how, summit, Box::new(solved));
         // NaN counts as infinite.
         let error = |solution: &Solution<'_>| solution.certificate().error(bound).min(f64::INFINITY);

@@ -4,6 +4,7 @@ mod capabilities;
 mod error_bars;
 mod gas;
 mod gauss_seidel;
+mod gradient;
 mod handover;
 mod hardness;
 mod hardness_of_solids;
