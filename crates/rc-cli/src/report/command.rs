@@ -19,8 +19,16 @@ fn word(value: &Value) -> Option<String> {
     match value {
         Value::Null => None,
         Value::String(text) => Some(quoted(text)),
+        Value::Array(values) if values.iter().all(Value::is_number) => Some(quoted(&list(values))),
+        // Its fields are in the order of the flag's list.
+        Value::Object(fields) => Some(quoted(&list(fields.values()))),
         other => Some(quoted(&other.to_string())),
     }
+}
+
+/// Numbers as the list that a flag takes.
+fn list<'a>(values: impl IntoIterator<Item = &'a Value>) -> String {
+    values.into_iter().map(Value::to_string).collect::<Vec<_>>().join(",")
 }
 
 /// `text` as one word of a shell.
@@ -44,14 +52,18 @@ mod tests {
     /// The flags keep every digit, so that the command repeats the result bit by bit.
     #[test]
     fn the_flags_of_a_scene_are_that_scene() {
-        let scene = file::parse(
+        let scenes = [
             "cell = 0.012345678901234567\nwaves = 8\nhurst = 0.7000000000000001\ntruncation = \"square\"\ngrid = \"64x32\"\n\
              e_star = 1e9\npressure = 446394.9843260188\nkernel = \"spectral\"\nmethod = \"gauss-seidel\"\ntolerance = \"auto\"\nleakage = true\n",
-        );
-        let scene = scene.expect("a scene");
-        let line = format!("solve{}{}", flags(&scene.surface), flags(&scene.contact));
-        let matches = Scene::augment_args(clap::Command::new("solve")).get_matches_from(line.split(' '));
-        assert_eq!(Scene::from_arg_matches(&matches).expect("a command line"), scene, "{line}");
+            "waves = 8\ne_star = 1e9\nhardness = 3e6\nhistory = [1e6, 0, 5e5]\nconductivity = \"400,50\"\n",
+            "waves = 8\npressure = 1e6\nspeed = 0.1\nfractional = { alpha = 0.2, glassy_ratio = 10, tau = 1e-3 }\n",
+        ];
+        for scene in scenes {
+            let scene = file::parse(scene).expect("a scene");
+            let line = format!("solve{}{}", flags(&scene.surface), flags(&scene.contact));
+            let matches = Scene::augment_args(clap::Command::new("solve")).get_matches_from(line.split(' '));
+            assert_eq!(Scene::from_arg_matches(&matches).expect("a command line"), scene, "{line}");
+        }
     }
 
     #[test]

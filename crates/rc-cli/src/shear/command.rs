@@ -12,6 +12,7 @@ use crate::curves::table::SweepTable;
 use crate::error::CliError;
 use crate::files::kind::Kind;
 use crate::report::quoted;
+use crate::scene::resolve::shear::check_friction;
 use crate::{terminal, text};
 
 /// Runs `rc shear`.
@@ -20,11 +21,7 @@ use crate::{terminal, text};
 /// [`CliError`].
 pub(crate) fn run(args: &ShearArgs) -> Result<(), CliError> {
     let ShearArgs { friction, poisson, .. } = *args;
-    if !(friction > 0.0 && friction.is_finite()) {
-        return Err(CliError::input(format_args!(
-            "friction: must be positive and finite (a coefficient such as 0.3), not {friction}"
-        )));
-    }
+    check_friction(friction)?;
     if let Some(poisson) = poisson.filter(|poisson| !(*poisson > -1.0 && *poisson <= 0.5)) {
         return Err(CliError::input(format_args!("poisson: must be above -1 and at most 0.5, not {poisson}")));
     }

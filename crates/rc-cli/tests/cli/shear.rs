@@ -85,7 +85,7 @@ fn a_shear_that_cannot_be_is_refused_with_its_key() {
         ("--friction 0.4", "friction: Coulomb's coefficient belongs to a shear"),
         ("--shear-pressure 1kPa", "shear_pressure: a shear needs friction"),
         ("--uncoupled", "uncoupled: a shear needs friction"),
-        ("--friction 0 --shear-pressure 1kPa", "friction: must be positive"),
+        ("--friction 0 --shear-pressure 1kPa", "friction: must be above 0"),
         ("--friction 0.4 --shear-pressure -1", "shear_pressure: must be positive"),
         (
             "--friction 0.4 --shear-pressure 8kPa",
@@ -221,7 +221,7 @@ fn what_is_no_load_curve_is_refused() {
         ("hard.csv --friction 0.4", "cannot be combined with a hardness"),
         ("open.csv --friction 0.4", "the row at 1 MPa did not converge"),
         ("none --friction 0.4", "not a table of rc sweep"),
-        ("few.csv --friction -1", "friction: must be positive"),
+        ("few.csv --friction -1", "friction: must be above 0"),
         ("few.csv --friction 0.4 --poisson 0.6", "poisson: must be above -1 and at most 0.5"),
     ] {
         assert_refused(&run(&place, &format!("shear {words} --out s")), expected);

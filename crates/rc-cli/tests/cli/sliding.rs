@@ -166,7 +166,7 @@ fn what_cannot_slide_is_refused() {
         ("--speed 1 --direction 30 --prony rubber.csv --method adaptive", "method: "),
         ("--speed 1 --prony rubber.csv --method gauss-seidel", "method: "),
         ("--speed 1 --prony rubber.csv --border-level 1", "speed: "),
-        ("--speed 1 --prony rubber.csv --young2 1GPa --poisson2 0.3", "young2: the surface slides as a rigid body"),
+        ("--speed 1 --prony rubber.csv --young2 1GPa --poisson2 0.3", "young2: the other body is rigid"),
     ] {
         let words = format!("solve {SOFT} --pressure 2kPa --quiet {words}");
         assert_refused(&run(&place, &words), expected);

@@ -67,13 +67,29 @@ impl Coupling {
     }
 }
 
+/// Largest coefficient of friction, beyond any that is measured.
+const MAX_FRICTION: f64 = 1e3;
+
+/// Refuses a coefficient that is not positive, or beyond any that is measured.
+///
+/// # Errors
+/// [`CliError::Input`].
+pub(crate) fn check_friction(friction: f64) -> Result<(), CliError> {
+    if friction > 0.0 && friction <= MAX_FRICTION {
+        return Ok(());
+    }
+    Err(CliError::input(format_args!(
+        "friction: must be above 0 and at most {MAX_FRICTION} (a coefficient such as 0.3), not {friction}"
+    )))
+}
+
 /// The shear of these keys; `None` without one.
 ///
 /// # Errors
 /// [`CliError::Input`] for keys without their partners, values that cannot be, and bodies that are coupled.
 pub(super) fn shear(keys: &ContactKeys, (control, units): (Control, Units)) -> Result<Option<ShearSetup>, CliError> {
     let Some(friction) = keys.friction else { return without_friction(keys) };
-    let friction = positive("friction", "a coefficient such as 0.3", Some(friction))?;
+    check_friction(friction)?;
     let control = match (keys.shear_pressure, keys.shear_displacement) {
         (Some(shear), None) => {
             let shear = positive("shear_pressure", "Pa", Some(shear))?;

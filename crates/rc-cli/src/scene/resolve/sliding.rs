@@ -108,9 +108,9 @@ pub(super) fn solid(keys: &ContactKeys) -> Result<Option<SlidingSolid>, CliError
         (Some(_), None) => Err(CliError::input(
             "speed: sliding changes nothing without a material that relaxes; give prony, or glassy_ratio and relaxation_time",
         )),
-        (None, Some((key, _))) => {
-            Err(CliError::input(format_args!("{key}: a material that relaxes needs speed (m/s); give it too")))
-        }
+        (None, Some((key, _))) => Err(CliError::input(format_args!(
+            "{key}: a material that relaxes needs speed (m/s); give it too, or a list of speeds or times in a sweep"
+        ))),
         (Some(speed), Some((_, material))) => {
             check_speed(speed)?;
             let direction = keys.direction.unwrap_or(0.0);
@@ -159,6 +159,9 @@ fn check_speed(speed: f64) -> Result<(), CliError> {
     }
 }
 
+/// Largest ratio of the glassy to the relaxed modulus. That of rubbers is up to 1e4.
+const MAX_GLASSY_RATIO: f64 = 1e9;
+
 /// The material of the keys, and the key that gives it.
 fn material(keys: &ContactKeys) -> Result<Option<(&'static str, Relaxation)>, CliError> {
     let given = [
@@ -190,8 +193,14 @@ fn material(keys: &ContactKeys) -> Result<Option<(&'static str, Relaxation)>, Cl
             if matches!(cause, MaterialError::Time { .. }) && key == "glassy_ratio" { "relaxation_time" } else { key };
         CliError::input(format_args!("{key}: {cause}"))
     })?;
+    if material.glassy_ratio() > MAX_GLASSY_RATIO {
+        return Err(CliError::input(format_args!(
+            "{key}: the glassy modulus is {:.1e} times the relaxed one; give a series relative to the relaxed modulus, at most {MAX_GLASSY_RATIO:e}",
+            material.glassy_ratio()
+        )));
+    }
     if keys.young2.is_some() || keys.poisson2.is_some() {
-        return Err(CliError::input(format_args!("young2: the surface slides as a rigid body; omit young2, or {key}")));
+        return Err(CliError::input(format_args!("young2: the other body is rigid; omit young2, or {key}")));
     }
     Ok(Some((key, material)))
 }
