@@ -367,6 +367,12 @@ pub(super) mod tests {
         serde_json::from_value(keys.into()).expect("a summary")
     }
 
+    /// A result at rest on a cell of 1 m, with E* = 1 Pa.
+    fn folder(summary: Summary, pressure: Field, gap: Field) -> ResultFolder {
+        let [side, e_star] = [1.0; 2];
+        ResultFolder { summary, side, e_star, direction: None, pressure, gap, plastic_gap: None, slip: None }
+    }
+
     /// In full contact the stress is normal about its mean, with the variance 2Λ.
     ///
     /// This holds for any mean.
@@ -390,16 +396,7 @@ pub(super) mod tests {
             let gap = Field::zeros(grid);
             // With this slope the variance of full contact is spread².
             let summary = summary(grid, mean_pressure, 2.0 * spread, None);
-            let result = ResultFolder {
-                summary,
-                side: 1.0,
-                e_star: 1.0,
-                direction: None,
-                pressure,
-                gap,
-                plastic_gap: None,
-                slip: None,
-            };
+            let result = folder(summary, pressure, gap);
             let stress = stress(&result).expect("contact");
             let note = &stress.notes[1];
             let (_, part) = note.split_once("E*², ").expect("the part of the theory");
@@ -418,16 +415,7 @@ pub(super) mod tests {
         let result = |n| {
             let summary = summary(Grid::square(n).expect("a grid"), 1.0, 0.1, None);
             let (pressure, gap) = (pressure.clone(), gap.clone());
-            ResultFolder {
-                summary,
-                side: 1.0,
-                e_star: 1.0,
-                direction: None,
-                pressure,
-                gap,
-                plastic_gap: None,
-                slip: None,
-            }
+            folder(summary, pressure, gap)
         };
         let numbers = |result: &ResultFolder| serde_json::to_value(&maps(result).gap).expect("JSON")["data"].clone();
         let encoded = |numbers: [u16; 4]| {

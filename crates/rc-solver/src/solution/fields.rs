@@ -16,7 +16,7 @@ impl Solution<'_> {
     pub fn pressure(&self) -> &Field {
         match self.solved.stored() {
             Some([pressure, _]) => pressure,
-            None => self.pressure.get_or_init(|| self.collect(self.grid(), |take| self.pressure_rows(take))),
+            None => self.computed.pressure.get_or_init(|| self.collect(self.grid(), |take| self.pressure_rows(take))),
         }
     }
 
@@ -27,7 +27,7 @@ impl Solution<'_> {
     pub fn gap(&self) -> &Field {
         match self.solved.stored() {
             Some([_, gap]) if self.hardness().is_infinite() => gap,
-            _ => self.gap.get_or_init(|| self.collect(self.grid(), |take| self.gap_rows(take))),
+            _ => self.computed.gap.get_or_init(|| self.collect(self.grid(), |take| self.gap_rows(take))),
         }
     }
 
@@ -47,7 +47,7 @@ impl Solution<'_> {
     /// It is zero where the pressure is below the hardness, and everywhere without a hardness.
     #[must_use]
     pub fn plastic_gap(&self) -> &Field {
-        self.plastic_gap.get_or_init(|| self.collect(self.grid(), |take| self.plastic_gap_rows(take)))
+        self.computed.plastic_gap.get_or_init(|| self.collect(self.grid(), |take| self.plastic_gap_rows(take)))
     }
 
     /// ⟨1/(g + m)⟩ over the nominal area, in 1/λ: the conductance of a gas in the gap g, for conductivity 1.
@@ -70,7 +70,7 @@ impl Solution<'_> {
     /// The first call takes one application of L.
     #[must_use]
     pub fn displacement(&self) -> &Field {
-        self.displacement.get_or_init(|| {
+        self.computed.displacement.get_or_init(|| {
             self.collect(self.grid(), |take| hand_out(&self.ranks(), take, |take| self.solved.displacement_rows(take)))
         })
     }
@@ -83,7 +83,7 @@ impl Solution<'_> {
     /// # Errors
     /// The error that `take` returns.
     pub fn pressure_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        match self.pressure.get() {
+        match self.computed.pressure.get() {
             Some(pressure) => self.rows_of(pressure, take),
             None => hand_out(&self.ranks(), take, |take| self.solved.pressure_rows(Receiver::First, take)),
         }
@@ -106,7 +106,7 @@ impl Solution<'_> {
     /// # Errors
     /// The error that `take` returns.
     pub fn gap_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        match (self.solved.stored(), self.gap.get()) {
+        match (self.solved.stored(), self.computed.gap.get()) {
             (Some([_, gap]), _) if self.hardness().is_infinite() => self.rows_of(gap, take),
             (_, Some(gap)) => self.rows_of(gap, take),
             _ => self.part_rows(GapPart::Open, Rows::on_grid(Receiver::First), take),
@@ -118,7 +118,7 @@ impl Solution<'_> {
     /// # Errors
     /// The error that `take` returns.
     pub fn plastic_gap_rows<E>(&self, take: impl FnMut(usize, &[f64]) -> Result<(), E>) -> Result<(), E> {
-        match self.plastic_gap.get() {
+        match self.computed.plastic_gap.get() {
             Some(gap) => self.rows_of(gap, take),
             None => self.part_rows(GapPart::Plastic, Rows::on_grid(Receiver::First), take),
         }

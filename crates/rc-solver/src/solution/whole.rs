@@ -33,6 +33,12 @@ pub struct Solution<'a> {
     pub(crate) how: HowSolved,
     summit: Summit,
     pub(crate) solved: Box<dyn Solved + 'a>,
+    pub(crate) computed: Computed,
+}
+
+/// What is computed when it is first requested.
+#[derive(Default)]
+pub(crate) struct Computed {
     pub(crate) pressure: OnceLock<Field>,
     pub(crate) gap: OnceLock<Field>,
     pub(crate) plastic_gap: OnceLock<Field>,
@@ -62,19 +68,7 @@ const ROUGH_CONDUCTANCE: f64 = 0.05;
 impl<'a> Solution<'a> {
     /// The solution of a solved level.
     pub(crate) fn new(how: HowSolved, summit: Summit, solved: Box<dyn Solved + 'a>) -> Self {
-        Self {
-            how,
-            summit,
-            solved,
-            pressure: OnceLock::new(),
-            gap: OnceLock::new(),
-            plastic_gap: OnceLock::new(),
-            displacement: OnceLock::new(),
-            observables: OnceLock::new(),
-            stiffness: OnceLock::new(),
-            conductance: OnceLock::new(),
-            least_rise: OnceLock::new(),
-        }
+        Self { how, summit, solved, computed: Computed::default() }
     }
 
     /// The same solution without borrows.
@@ -83,33 +77,8 @@ impl<'a> Solution<'a> {
     /// ([`rc_core::Kernel::to_shared`]). If there is none, displacement and stiffness are computed now.
     #[must_use]
     pub fn into_owned(self) -> Solution<'static> {
-        let Self {
-            how,
-            summit,
-            solved,
-            pressure,
-            gap,
-            plastic_gap,
-            displacement,
-            observables,
-            stiffness,
-            conductance,
-            least_rise,
-        } = self;
-        let solved = solved.into_owned();
-        Solution {
-            how,
-            summit,
-            solved,
-            pressure,
-            gap,
-            plastic_gap,
-            displacement,
-            observables,
-            stiffness,
-            conductance,
-            least_rise,
-        }
+        let Self { how, summit, solved, computed } = self;
+        Solution { how, summit, solved: solved.into_owned(), computed }
     }
 
     /// How the solve ended.
@@ -220,7 +189,7 @@ impl<'a> Solution<'a> {
     }
 
     fn with_penetration_error(&self) -> &(Observables, f64) {
-        self.observables.get_or_init(|| {
+        self.computed.observables.get_or_init(|| {
             let observables = self.solved.observables();
             let of_depth = observables.mean_gap_error.hypot(observables.hidden_depth_error(self.info()));
             let error = self.summit.excess + of_depth;
@@ -242,7 +211,7 @@ impl<'a> Solution<'a> {
     /// takes a few applications of L.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
-        *self.stiffness.get_or_init(|| self.solved.stiffness())
+        *self.computed.stiffness.get_or_init(|| self.solved.stiffness())
     }
 
     /// The smallest dp/dσ0 in an elastic contact at rest, at this load. `None` if the kernel makes no copy of itself, and
@@ -252,7 +221,7 @@ impl<'a> Solution<'a> {
     /// it may be less. Where it is negative, a growing load relieves a point, and the creep of Lee and Radok pulls there.
     #[must_use]
     pub fn least_pressure_rise(&self) -> Option<f64> {
-        *self.least_rise.get_or_init(|| self.solved.least_rise())
+        *self.computed.least_rise.get_or_init(|| self.solved.least_rise())
     }
 
     /// Electrical or thermal conductance of the contact spots for unit conductivity, per nominal area, in 1/λ.
@@ -262,7 +231,7 @@ impl<'a> Solution<'a> {
     /// linear solve with plastic elements, which conduct like others, or on a layer. It is infinite in full contact.
     #[must_use]
     pub fn conductance(&self) -> f64 {
-        *self.conductance.get_or_init(|| self.solved.conductance().unwrap_or_else(|| self.stiffness()))
+        *self.computed.conductance.get_or_init(|| self.solved.conductance().unwrap_or_else(|| self.stiffness()))
     }
 
     /// Estimated error of [`Solution::conductance`] from the mesh and from its solve, in 1/λ.
