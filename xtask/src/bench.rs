@@ -49,6 +49,9 @@ pub(crate) struct Args {
     /// Times are by number of threads and by contact area. With --peers ASPHER is measured too.
     #[arg(long, conflicts_with = "scenes", group = "instead")]
     scale: bool,
+    /// Instead of errors: the part of each step in the time of a solve.
+    #[arg(long, group = "instead")]
+    steps: bool,
     /// Instead of measuring: rewrites the tables in the documents, and the picture, from the archived run.
     #[arg(long, group = "instead")]
     tables: bool,
@@ -70,6 +73,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     match args {
         Args { job: Some(job), .. } => bench::work(job),
         Args { scale: true, .. } => bench::measure_scale(&params(args)?, args.quick),
+        Args { steps: true, archive, .. } => bench::measure_steps(*archive),
         Args { check: true, .. } => bench::check(),
         Args { accept: true, .. } => bench::accept(),
         Args { tables: true, .. } => bench::update_documents(),

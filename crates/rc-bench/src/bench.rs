@@ -17,6 +17,7 @@ mod rounds;
 mod scale;
 mod scenes;
 mod setting;
+mod steps;
 mod tables;
 mod times;
 
@@ -34,6 +35,7 @@ pub use counts::{accept, check};
 pub use documents::check as check_documents;
 pub use make_reference::run as make_reference;
 pub use scenes::Scene;
+pub use steps::measure as measure_steps;
 
 use peers::{ASPHER, PEERS, PeerKind};
 use picture::TimeAgainstError;

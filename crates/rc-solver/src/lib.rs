@@ -59,6 +59,7 @@ pub use crate::problem::control::Control;
 pub use crate::problem::error::{OperatorFault, ProblemError};
 pub use crate::problem::method::Method;
 pub use crate::problem::method_reason::MethodReason;
+pub use crate::problem::steps::{Step, record_steps};
 pub use crate::problem::tolerance::{ErrorBound, Tolerance};
 pub use crate::shear::error::ShearError;
 pub use crate::shear::params::{ShearControl, ShearParams};

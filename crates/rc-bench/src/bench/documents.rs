@@ -7,6 +7,7 @@ use rc_figures::repository::Sources;
 use super::record::{Row, from_csv};
 use super::reference::{REFERENCE, References};
 use super::scale::ScaleRow;
+use super::steps::{STEPS, archived};
 use super::tables::{contact, equal_meshes, grids, machine, sentence, spreads, times};
 use super::times::Results;
 
@@ -21,8 +22,16 @@ pub(super) const SCALE: &str = "data/bench/scale.csv";
 pub(super) const SCALE_MACHINE: &str = "data/bench/scale.toml";
 
 /// The names of the blocks.
-const BLOCKS: [&str; 7] =
-    ["bench-times", "bench-equal", "bench-machine", "scale-grids", "scale-contact", "scale-sentence", "scale-machine"];
+const BLOCKS: [&str; 8] = [
+    "bench-times",
+    "bench-equal",
+    "bench-machine",
+    "bench-steps",
+    "scale-grids",
+    "scale-contact",
+    "scale-sentence",
+    "scale-machine",
+];
 
 /// Rewrites the tables in the documents.
 ///
@@ -59,6 +68,7 @@ fn block(name: &str, sources: &Sources) -> Result<String> {
         "bench-times" => times(&results),
         "bench-equal" => equal_meshes(&results),
         "bench-machine" => machine(&source(MACHINE)?.parse()?) + "\n" + &spreads(&results),
+        "bench-steps" => archived(source(STEPS)?)?,
         "scale-grids" => grids(&scale),
         "scale-contact" => contact(&scale),
         "scale-sentence" => sentence(&scale).unwrap_or_default(),
@@ -81,7 +91,7 @@ mod tests {
     use crate::bench::record::{OURS, to_csv};
     use crate::bench::reference::Quantity;
     use crate::bench::scale::tests::rows as scale_rows;
-    use crate::bench::setting::MESHES;
+    use crate::bench::tables::EQUAL_MESHES;
     use crate::bench::times::LEVELS;
 
     /// Every block in each document, and the archived files.
@@ -139,16 +149,16 @@ mod tests {
         assert_eq!((aspher.reading, aspher.n - aspher.n_true), (Reading::Published, 8));
         // Equal meshes.
         let ahead = |method, kernel| {
-            let meshes = ["paper", "heavy"].into_iter().flat_map(|scene| MESHES.map(|mesh| (scene, mesh)));
-            let is_ahead = |&(scene, mesh): &(&str, usize)| {
+            let meshes = ["paper", "heavy"].into_iter().flat_map(|scene| EQUAL_MESHES.map(|mesh| (scene, mesh)));
+            let is_ahead = |&(scene, mesh): &(&str, f64)| {
                 let of = |program, method, kernel| results.on_mesh(scene, (program, method, kernel, 0, "1e-6"), mesh);
                 let ours_and_theirs = of(OURS, method, kernel).zip(of(ASPHER.name, "uniform", "spectral"));
                 ours_and_theirs.is_some_and(|(ours, theirs)| theirs < ours)
             };
             meshes.filter(is_ahead).collect::<Vec<_>>()
         };
-        assert_eq!(ahead("adaptive", "love"), [("paper", 8), ("heavy", 8), ("heavy", 16)]);
-        assert_eq!(ahead("uniform", "spectral"), [("heavy", 4)]);
+        assert_eq!(ahead("adaptive", "love"), [("paper", 8.0), ("heavy", 8.0), ("heavy", 16.0)]);
+        assert_eq!(ahead("uniform", "spectral"), [("heavy", 4.0)]);
         // The paper.
         let paper = sources["docs/paper/paper.md"].split_whitespace().collect::<Vec<_>>().join(" ");
         let area = (Quantity::Area, 1e-3);

@@ -55,7 +55,7 @@ const LOVE_PERIMETER: f64 = 0.0872;
 
 fn rows(scene: &Scene) -> Result<Vec<ReferenceRow>> {
     let uniform = |kernel| {
-        let setting = |elements| Setting::uniform(kernel, elements, TOLERANCE);
+        let setting = |elements: f64| Setting::uniform(kernel, elements, TOLERANCE);
         SIDES.into_iter().map(|side| on(scene, side, setting)).collect::<Result<Vec<_>>>()
     };
     let (spectral, love) = (uniform(KernelName::Spectral)?, uniform(KernelName::Love)?);
@@ -85,8 +85,8 @@ fn row(scene: &Scene, quantity: Quantity, (limit, check): (Limit, Limit)) -> Ref
 }
 
 #[expect(clippy::print_stdout, reason = "it takes minutes")]
-fn on(scene: &Scene, side: usize, setting: impl Fn(usize) -> Setting) -> Result<Solved> {
-    let setting = setting(side / scene.waves);
+fn on(scene: &Scene, side: usize, setting: impl Fn(f64) -> Setting) -> Result<Solved> {
+    let setting = setting((side / scene.waves) as f64);
     println!("{}: {setting}", scene.name);
     solve(scene, &setting)
 }

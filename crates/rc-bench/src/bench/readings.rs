@@ -95,7 +95,7 @@ pub(super) fn stated(rows: &[&Row], quantity: Quantity, reading: Reading) -> Vec
 
 /// Whether no mesh is missing between two. One is when a peer failed on it.
 fn are_successive(coarse: &Row, fine: &Row) -> bool {
-    2 * coarse.elements_per_wave == fine.elements_per_wave
+    (2.0 * coarse.elements_per_wave - fine.elements_per_wave).abs() < 1e-9
 }
 
 fn order(quantity: Quantity) -> f64 {

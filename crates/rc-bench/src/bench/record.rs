@@ -20,7 +20,7 @@ pub(super) struct Row {
     pub(super) method: String,
     pub(super) kernel: String,
     pub(super) border_level: usize,
-    pub(super) elements_per_wave: usize,
+    pub(super) elements_per_wave: f64,
     pub(super) tolerance: String,
     pub(super) status: String,
     pub(super) iterations: Option<u64>,
@@ -63,7 +63,7 @@ impl Row {
     pub(super) fn of(case: &Case) -> Option<Self> {
         let Case { scene, peer, setting, outcomes, .. } = case;
         let first = outcomes.first()?;
-        let n_smallest = (scene.side(setting.elements_per_wave << setting.border_level) as f64).powi(2);
+        let n_smallest = (scene.side(setting.smallest()) as f64).powi(2);
         let Spread { median: seconds, min, max } = Spread::of(outcomes.iter().map(|one| one.seconds));
         let bar = |bar: Option<f64>| bar.map(|bar| rounded(bar, 3));
         let takes_tolerance = peer.is_none_or(|kind| kind.takes_tolerance);

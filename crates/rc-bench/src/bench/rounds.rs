@@ -18,12 +18,16 @@ use super::setting::{KernelName, LARGEST_UNIFORM, MESHES, Setting, of_peer};
 /// Total seconds of a case after which it is not solved again.
 const ENOUGH: f64 = 60.0;
 
-/// The coarsest mesh of the peers: every second point of our coarsest mesh.
-///
-/// From it, the peers' users state the errors of the next mesh.
-const COARSEST_OF_PEERS: usize = MESHES[0] / 2;
+/// Meshes of the peers. Their users state the errors of a mesh from the mesh of elements twice as large.
+const MESHES_OF_PEERS: [f64; 11] = [2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0, 128.0];
 
-/// Smallest ratio of times on a mesh and on the next coarser one.
+/// The coarsest mesh that a surface is sampled on. Coarser meshes have every second of its points.
+const COARSEST_SAMPLED: f64 = 3.0;
+
+/// Finest mesh that is solved without an expectation of the time: the first solve of a process takes longer than others.
+const UNEXPECTED: f64 = 4.0;
+
+/// Smallest ratio of times on a mesh and on that of elements twice as large.
 const GROWTH: f64 = 5.0;
 
 /// Limits of a run.
@@ -56,7 +60,7 @@ impl Case {
     }
 
     /// A solve of a peer, with all threads.
-    pub(super) fn of_peer(scene: Scene, kind: PeerKind, elements_per_wave: usize, tolerance: Tolerance) -> Self {
+    pub(super) fn of_peer(scene: Scene, kind: PeerKind, elements_per_wave: f64, tolerance: Tolerance) -> Self {
         let setting = Setting::uniform(KernelName::Spectral, elements_per_wave, tolerance);
         Self { peer: Some(kind), ..Self::ours(scene, setting, all_threads()) }
     }
@@ -77,19 +81,16 @@ impl Case {
 /// Cases under comparison then run at about the same time.
 pub(super) fn cases(scene: Scene, with_peers: bool) -> Vec<Case> {
     let mut cases = Vec::new();
-    let mut mesh = if with_peers { COARSEST_OF_PEERS } else { MESHES[0] };
-    while MESHES.contains(&mesh) || (with_peers && scene.side(mesh) <= LARGEST_UNIFORM) {
-        if MESHES.contains(&mesh) {
-            let settings = Setting::of_mesh(&scene, mesh).into_iter();
-            cases.extend(settings.map(|setting| Case::ours(scene, setting, all_threads())));
-        }
-        if with_peers && scene.side(mesh) <= LARGEST_UNIFORM {
-            for kind in PEERS {
-                cases.extend(kind.tolerances.iter().map(|&tolerance| Case::of_peer(scene, kind, mesh, tolerance)));
-            }
-        }
-        mesh *= 2;
+    for mesh in MESHES {
+        let settings = Setting::of_mesh(&scene, mesh).into_iter();
+        cases.extend(settings.map(|setting| Case::ours(scene, setting, all_threads())));
     }
+    for mesh in MESHES_OF_PEERS.into_iter().filter(|&mesh| with_peers && scene.side(mesh) <= LARGEST_UNIFORM) {
+        for kind in PEERS {
+            cases.extend(kind.tolerances.iter().map(|&tolerance| Case::of_peer(scene, kind, mesh, tolerance)));
+        }
+    }
+    cases.sort_by(|a, b| a.setting.elements_per_wave.total_cmp(&b.setting.elements_per_wave));
     cases
 }
 
@@ -122,12 +123,15 @@ fn is_too_long(cases: &[Case], i: usize, peer_seconds: f64) -> bool {
 
 /// Expected seconds of a peer's case, from the next coarser mesh.
 ///
-/// They are 0 on the two coarsest meshes, since the first solve of a process takes longer than others. They are
-/// infinite when the coarser mesh was left out.
+/// They are 0 on the coarsest meshes, and infinite when the coarser mesh was left out.
 fn expected(cases: &[Case], i: usize) -> f64 {
-    let is_coarser = |case: &&Case| case.is_like(&cases[i]) && case.setting.elements_per_wave > COARSEST_OF_PEERS;
-    let coarser = cases[..i].iter().rfind(is_coarser);
-    coarser.map_or(0.0, |case| case.outcomes.first().map_or(f64::INFINITY, |first| GROWTH * first.seconds))
+    let mesh = |case: &Case| case.setting.elements_per_wave;
+    if mesh(&cases[i]) <= UNEXPECTED {
+        return 0.0;
+    }
+    let Some(coarser) = cases[..i].iter().rfind(|case| case.is_like(&cases[i])) else { return 0.0 };
+    let growth = GROWTH.powf((mesh(&cases[i]) / mesh(coarser)).log2());
+    coarser.outcomes.first().map_or(f64::INFINITY, |first| growth * first.seconds)
 }
 
 /// The peers that run, and files of heights for them.
@@ -157,8 +161,8 @@ impl Peers {
         let Case { scene, peer, setting, .. } = case;
         let Some(kind) = peer else { return child::solve(scene, *setting, case.threads) };
         // A surface is not sampled so coarsely that its shortest waves are lost.
-        let stride = MESHES[0].div_ceil(setting.elements_per_wave);
-        let heights = self.heights(scene, scene.side(stride * setting.elements_per_wave))?;
+        let stride = (COARSEST_SAMPLED / setting.elements_per_wave).ceil() as usize;
+        let heights = self.heights(scene, scene.side(stride as f64 * setting.elements_per_wave))?;
         let peer = self.running.get_mut(kind.name).context("the peer is not running")?;
         let tolerance = kind.takes_tolerance.then(|| of_peer(setting.tolerance, setting.elements_per_wave));
         let answer = peer.solve(&Question { heights: &heights, stride, load: scene.load, tolerance });

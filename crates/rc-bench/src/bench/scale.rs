@@ -80,8 +80,8 @@ impl ScaleRow {
 }
 
 /// Elements for the shortest wave: `FINE` on grids of several sizes, `COARSE` for several loads.
-const FINE: usize = 32;
-const COARSE: usize = 16;
+const FINE: f64 = 32.0;
+const COARSE: f64 = 16.0;
 
 /// Largest grid of a peer, and of solves with fewer threads than the machine has.
 const LARGEST_COMPARED: usize = 4096;

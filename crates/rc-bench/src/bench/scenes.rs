@@ -72,8 +72,8 @@ impl Scene {
     }
 
     /// Elements per side of the cell, from elements for the shortest wave.
-    pub(super) fn side(&self, elements_per_wave: usize) -> usize {
-        elements_per_wave * self.waves
+    pub(super) fn side(&self, elements_per_wave: f64) -> usize {
+        (elements_per_wave * self.waves as f64).round() as usize
     }
 }
 

@@ -8,7 +8,6 @@ use super::peers::PEERS;
 use super::record::{OURS, Spread};
 use super::scale::{Part, ScaleRow};
 use super::scenes::{SCENES, Scene};
-use super::setting::MESHES;
 use super::times::{Asked, LEVELS, Ratio, Reached, Results};
 
 /// Table of times to a stated error: ours, and each peer's with its ratio to ours.
@@ -43,14 +42,17 @@ fn ratio(Ratio { value, is_bound }: Ratio) -> String {
 }
 
 /// The scenes of the table of equal meshes: the paper's, and the one with most contact.
-const EQUAL_MESHES: [Scene; 2] = [SCENES[0], SCENES[5]];
+const EQUAL_SCENES: [Scene; 2] = [SCENES[0], SCENES[5]];
+
+/// Its meshes.
+pub(super) const EQUAL_MESHES: [f64; 4] = [4.0, 8.0, 16.0, 32.0];
 
 /// Table of times on equal meshes, to the tolerance that all but one certify.
 pub(super) fn equal_meshes(results: &Results<'_>) -> String {
     let families = [(OURS, "uniform", "spectral"), (OURS, "adaptive", "love")]
         .into_iter()
         .chain(PEERS.map(|kind| (kind.name, "uniform", "spectral")));
-    let line = |(scene, mesh): (Scene, usize)| {
+    let line = |(scene, mesh): (Scene, f64)| {
         let times = families.clone().map(|(program, method, kernel)| {
             let of = |tolerance| results.on_mesh(scene.name, (program, method, kernel, 0, tolerance), mesh);
             cell(of("1e-6").or_else(|| of("default")), time)
@@ -58,8 +60,8 @@ pub(super) fn equal_meshes(results: &Results<'_>) -> String {
         [format!("{}, λ_min/{mesh}, {}²", scene.name, scene.side(mesh))].into_iter().chain(times).collect()
     };
     let titles = ["scene, mesh, grid", "rc, uniform", "rc, adaptive"].into_iter().chain(PEERS.map(|kind| kind.title));
-    let scenes = EQUAL_MESHES.into_iter().filter(|scene| results.scenes().contains(&scene.name));
-    let meshes = scenes.flat_map(|scene| MESHES.map(|mesh| (scene, mesh)));
+    let scenes = EQUAL_SCENES.into_iter().filter(|scene| results.scenes().contains(&scene.name));
+    let meshes = scenes.flat_map(|scene| EQUAL_MESHES.map(|mesh| (scene, mesh)));
     table(&titles.collect::<Vec<_>>(), meshes.map(line))
 }
 

@@ -1,5 +1,6 @@
 //! Times to a stated error, which the benchmark compares.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use rc_figures::numeric::median;
@@ -127,21 +128,24 @@ impl<'a> Results<'a> {
     }
 
     /// Seconds of a program on one mesh of a scene, to a tolerance that all programs but one certify.
-    pub(super) fn on_mesh(&self, scene: &str, family: Family<'_>, elements_per_wave: usize) -> Option<f64> {
+    pub(super) fn on_mesh(&self, scene: &str, family: Family<'_>, elements_per_wave: f64) -> Option<f64> {
         let mut rows = self.of(scene, family.0);
-        let row = rows.find(|row| row.family() == family && row.elements_per_wave == elements_per_wave)?;
+        let row =
+            rows.find(|row| row.family() == family && (row.elements_per_wave - elements_per_wave).abs() < 1e-9)?;
         Some(row.total_seconds())
     }
 }
 
-/// Lines by family. The lines of a family go from the coarsest mesh to the finest.
+/// Lines by family. Those of meshes that are halves of each other follow each other, from the coarsest to the finest.
 fn families<'a>(rows: impl Iterator<Item = &'a Row>) -> BTreeMap<Family<'a>, Vec<&'a Row>> {
     let mut families: BTreeMap<Family<'_>, Vec<&Row>> = BTreeMap::new();
     for row in rows {
         families.entry(row.family()).or_default().push(row);
     }
     for rows in families.values_mut() {
-        rows.sort_by_key(|row| row.elements_per_wave);
+        let of_series = |row: &Row| row.elements_per_wave / row.elements_per_wave.log2().floor().exp2();
+        let key = |row: &Row| [of_series(row), row.elements_per_wave];
+        rows.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal));
     }
     families
 }

@@ -5,6 +5,7 @@ use crate::descent::operators::{PreconditionedOperator, read_blocks, write_block
 use crate::descent::rows;
 use crate::descent::rows::{ClippedStep, ConjugateStep};
 use crate::parallel;
+use crate::problem::steps::Step;
 
 /// Directions of preconditioned conjugate gradients on the elements of one mesh, in single precision.
 pub(crate) struct ConjugateDirections {
@@ -122,6 +123,7 @@ impl ConjugateDirections {
         operator: Option<&mut (dyn PreconditionedOperator + '_)>,
         layout: &BlockLayout,
     ) -> PreconditionedSums {
+        let _running = Step::Preconditioner.begin();
         if let Some(operator) = operator {
             operator.precondition(&self.active, &mut self.preconditioned);
         }
@@ -142,6 +144,7 @@ impl ConjugateDirections {
         [beta, shift]: [f64; 2],
         slope: &Slope<'_>,
     ) -> DirectionSums {
+        let _running = Step::Directions.begin();
         let (len, factors) = (layout.len(), [beta as f32, shift as f32]);
         let blocks = self.preconditioned.chunks(len).zip(self.active.chunks(len)).zip(self.direction.chunks_mut(len));
         write_blocks(operator, blocks, |((preconditioned, active), direction), written| {

@@ -6,6 +6,7 @@ use crate::descent::rows::ElementValues;
 use crate::descent::sums::GapSums;
 use crate::parallel;
 use crate::problem::checked::Problem;
+use crate::problem::steps::Step;
 
 /// Computes the gap under the pressure from a fresh application of L.
 pub(crate) fn fresh_gap(
@@ -14,6 +15,7 @@ pub(crate) fn fresh_gap(
     elements: ElementValues<'_>,
     empty: GapSums,
 ) -> GapSums {
+    let _running = Step::FreshGaps.begin();
     let (layout, offset) = (operator.layout(), problem.offset());
     write_blocks(operator, elements.pressure.chunks(layout.len()), |p, values| values.copy_from_slice(p));
     operator.apply();

@@ -11,6 +11,7 @@ use crate::descent::state::{Descent, Follows};
 use crate::descent::stop::{Stopped, unless_stopped};
 use crate::descent::sums::GapSums;
 use crate::parallel;
+use crate::problem::steps::Step;
 
 /// Pressure on a square of side 1 alone that displaces its centre by 1: π / (4 ln(1 + √2)) E*.
 const ALONE: f64 = 0.891;
@@ -25,6 +26,7 @@ impl Descent<'_> {
     ///
     /// Each part of the load is restored where it was.
     pub(crate) fn project(&mut self, length: f64, is_heavy: bool, observer: &dyn Observer) -> Result<GapSums, Stopped> {
+        let _running = Step::Projection.begin();
         let gradient = self.gradient();
         let (n_changed, loads) = self.clip(length, is_heavy, &gradient);
         let shares = Shares::new(self.squares(), &loads);
@@ -44,6 +46,7 @@ impl Descent<'_> {
     ///
     /// One application of L gives that of the step, of clipping and of the loads that are moved.
     pub(crate) fn leap(&mut self, length: f64, observer: &dyn Observer) -> Result<GapSums, Stopped> {
+        let _running = Step::Projection.begin();
         let (gradient, len) = (self.gradient(), self.layout.len());
         self.directions.displacement.fill(0.0);
         let (_, loads) = self.clip(length, false, &gradient);

@@ -11,6 +11,7 @@ use rc_core::{Boundary, Observer};
 
 use crate::parallel;
 use crate::problem::control::Control;
+use crate::problem::steps::Step;
 
 /// The active elements of a round.
 pub(crate) struct ActiveSet {
@@ -64,6 +65,7 @@ impl Descent<'_> {
 
     /// Writes the residual of the active elements.
     pub(crate) fn begin_round(&mut self) -> ActiveSet {
+        let _running = Step::Residuals.begin();
         let (len, gradient) = (self.layout.len(), self.gradient());
         // The choice before clipping is kept only if residuals are extended.
         let is_chosen = std::mem::replace(&mut self.is_chosen, self.operators.corrections.extends());
@@ -110,6 +112,7 @@ impl Descent<'_> {
 
     /// Takes a step and writes the residual on the same elements.
     fn take_step(&mut self, length: f64) {
+        let _running = Step::Residuals.begin();
         let (len, gradient) = (self.layout.len(), self.gradient());
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let (steps, residuals) = self.directions.steps_and_residuals(len);

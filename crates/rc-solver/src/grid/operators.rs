@@ -12,9 +12,11 @@ use crate::grid::line::{LineCorrections, LineOperator};
 use crate::grid::margin::Margin;
 use crate::grid::passes::{layout, read_rows, write_rows};
 use crate::grid::response::GridResponse;
+use crate::problem::steps::Step;
 
 /// The operators L of `kernel` on `grid`.
 pub(crate) fn uniform_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
+    let _running = Step::Kernels.begin();
     operators_of(grid, kernel, GridResponse::of(grid, kernel))
 }
 

@@ -12,6 +12,7 @@ use crate::grid::prolongation::prolong;
 use crate::levels::nested::{Begun, History, Levels, Nested};
 use crate::parallel::rms;
 use crate::problem::checked::Problem;
+use crate::problem::steps::Step;
 
 /// Minimum number of elements per side of the coarsest grid.
 ///
@@ -23,6 +24,7 @@ const PIECE: usize = 4096;
 
 /// The heights on the coarser of nested grids, finest first. The coarsest has at least this number of elements a side.
 pub(crate) fn coarser_heights(heights: &Field, boundary: Boundary, smallest: usize) -> Vec<Field> {
+    let _running = Step::Heights.begin();
     coarsen(heights, boundary, Pits::Filled, about_halved(heights.grid(), smallest))
 }
 

@@ -21,6 +21,7 @@ use crate::problem::contact_problem::ContactProblem;
 use crate::problem::control::Control;
 use crate::problem::kernel::OwnedKernel;
 use crate::problem::method::Method;
+use crate::problem::steps::Step;
 use crate::problem::support::Support;
 use crate::tiles::base::Base;
 use crate::tiles::data::TileData;
@@ -254,6 +255,7 @@ impl<'a> TileLevels<'a> {
         extent: [usize; 2],
         gap: f64,
     ) -> Vec<[u32; 2]> {
+        let _running = Step::Exclusion.begin();
         let heights = (&self.data.heights, self.base());
         possible_contact(smooth, heights, gap - self.problem.offset(), (extent, self.ranks()))
     }
@@ -262,6 +264,7 @@ impl<'a> TileLevels<'a> {
     ///
     /// With `deepen`, the smallest elements are divided too.
     pub(crate) fn refined(&self, fields: &ContactFields<'_>, deepen: bool) -> Elements {
+        let _running = Step::Exclusion.begin();
         let (heights, pressure) = (self.data.heights.curvature(), parallel::maximum(fields.pressure, 0.0));
         let hardness = self.problem.bounds.hardness;
         // No pressure is nearer than the ring. So ∫ p |∂²(1/πr)/∂x²| dA ≤ max p ∫ 2/(π r³) dA.

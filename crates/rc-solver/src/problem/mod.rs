@@ -13,6 +13,7 @@ pub(crate) mod kernel;
 pub(crate) mod method;
 pub(crate) mod method_reason;
 pub(crate) mod params;
+pub(crate) mod steps;
 pub(crate) mod summit;
 pub(crate) mod support;
 pub(crate) mod tolerance;

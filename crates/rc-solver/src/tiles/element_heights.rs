@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use rc_quadtree::{CELLS, Elements, TileSet, means_of_quarter, quarters};
 
+use crate::problem::steps::Step;
 use crate::tiles::heights::on_demand::Heights;
 use crate::tiles::mesh::Mesh;
 
@@ -18,6 +19,7 @@ pub(crate) fn element_heights(
     known: Option<(&Mesh, &[f64])>,
     elsewhere: f64,
 ) -> Vec<f64> {
+    let _running = Step::Heights.begin();
     let mut result = match known {
         Some((known, values)) => known.moved(mesh, values, elsewhere),
         None => vec![elsewhere; mesh.n_own()],

@@ -10,6 +10,7 @@ use rc_quadtree::{TILE, put_tile};
 use crate::grid::coarser::{Pits, coarsen};
 use crate::problem::checked::HeightStatistics;
 use crate::problem::error::ProblemError;
+use crate::problem::steps::Step;
 use crate::problem::summit::Summit;
 use crate::tiles::heights::bounds::Bounds;
 use crate::tiles::heights::extremes;
@@ -80,6 +81,7 @@ impl<'a> Heights<'a> {
         grid: Grid,
         (ladder, boundary): (Ladder, Boundary),
     ) -> Result<Self, ProblemError> {
+        let _running = Step::Heights.begin();
         match is_interpolated(surface, grid, ladder) {
             Some((limit, level)) => Self::of_surface(surface, (limit, level), ladder, boundary),
             None => Self::of_map(WholeGrid::new(surface.sample(grid)), Some(surface), (ladder, boundary)),

@@ -8,6 +8,7 @@ use rc_kernel::{CoarseElement, Filter, RelaxedStencil, ScaleSplit, Stencil};
 
 use crate::grid::factors::Factors;
 use crate::grid::response::table_of_response;
+use crate::problem::steps::Step;
 use crate::tiles::base::Base;
 use crate::tiles::ladder;
 use crate::tiles::ladder::{has_squares, sides_of};
@@ -87,6 +88,7 @@ const INVERSE_RADIUS: usize = 2;
 impl<T: Real> Prepared<T> {
     /// Prepares `v = L p` for Love's squares, and elements up to 2^`n_coarse` times as large.
     pub(crate) fn displacement(split: &ScaleSplit, solid: impl Into<Solid>, n_coarse: usize) -> Self {
+        let _running = Step::Kernels.begin();
         let solid = solid.into();
         let base = solid.base();
         let cutoff = 0.5 * split.params().cutoff as f64 * base.grid().spacing().min_element();
@@ -109,6 +111,7 @@ impl<T: Real> Prepared<T> {
     ///
     /// Under a sliding surface, it is that of the `solid` with the storage modulus of each wave.
     pub(crate) fn inverse(split: &ScaleSplit, solid: impl Into<Solid>) -> Self {
+        let _running = Step::Kernels.begin();
         let solid = solid.into();
         let base = solid.base();
         let sizes = T::sizes(split.params());
@@ -147,6 +150,7 @@ impl<T: Real> Prepared<T> {
 
     /// Tables for a finest level of this whole grid.
     pub(crate) fn tables(&self, finest: Grid) -> Tables<T> {
+        let _running = Step::Kernels.begin();
         let n_levels = ladder::n_levels(self.base().grid(), finest);
         // A preconditioner halves every level.
         let is_uneven = matches!(self.scale, Scale::Side) && !ladder::is_even(self.base().grid(), finest);
