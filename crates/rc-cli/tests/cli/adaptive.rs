@@ -75,7 +75,7 @@ fn the_method_is_chosen_by_what_can_and_what_is_cheaper() {
         (&["1e5", "--grid", "128", "--method", "adaptive"], "adaptive", "as requested"),
         (&["1e5", "--grid", "128", "--method", "uniform"], "uniform", "as requested"),
         (&["1e5", "--grid", "128", "--kernel", "spectral"], "uniform", "has no adaptive form (spectral)"),
-        (&["4e6", "--grid", "128"], "uniform", "cheaper for the contact area of"),
+        (&["4e6", "--grid", "128"], "uniform", "cheaper on this grid for the contact area of"),
         (&["1e9", "--grid", "128"], "uniform", "contact area of 100 %"),
         (&["1e5", "--grid", "128x64"], "uniform", "needs square elements"),
         (&["1e5", "--grid", "66"], "uniform", "the grid 66 x 66 is too coarse for the adaptive method"),

@@ -81,7 +81,7 @@ impl fmt::Display for MethodReason {
             Self::LargeContact { percent } => {
                 write!(
                     f,
-                    "uniform: it is cheaper for the contact area of {} % that was estimated before the solve",
+                    "uniform: it is cheaper on this grid for the contact area of {} % that was estimated before the solve",
                     round(percent)
                 )
             }

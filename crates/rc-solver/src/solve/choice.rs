@@ -85,12 +85,13 @@ impl<'a> Choice<'a, '_> {
             Err(error) if only.is_some() => return Err(error.into()),
             Err(error) => return self.without_adaptive(error),
         };
-        let percent = 100.0 * adaptive.estimate().area_fraction;
+        let estimate = adaptive.estimate();
+        let percent = 100.0 * estimate.area_fraction;
         let adaptive = ChosenMethod::Adaptive(Box::new(adaptive));
         if let Some(refusal) = only {
             return Ok((adaptive, MethodReason::Only { method: Method::Adaptive, refusal }));
         }
-        if percent <= 100.0 * Estimate::GREATEST_ADAPTIVE_AREA {
+        if estimate.relative_time <= 1.0 {
             return Ok((adaptive, MethodReason::SmallContact { percent }));
         }
         match self.on_grid(Method::Uniform) {
