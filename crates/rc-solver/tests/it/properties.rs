@@ -28,7 +28,8 @@ const LENGTH: f64 = 1e-5;
 /// Waves up to 5 per cell, which may be mirrored in y. Heights and lengths in λ.
 #[derive(Clone)]
 struct Waves {
-    waves: Vec<[f64; 4]>,
+    /// Amplitude, wavenumbers and phase of each.
+    parts: Vec<[f64; 4]>,
     factor: f64,
     /// The side of the cell along y, if mirrored.
     mirrored: Option<f64>,
@@ -37,7 +38,7 @@ struct Waves {
 impl HeightField for Waves {
     fn height(&self, DVec2 { x, y }: DVec2) -> f64 {
         let y = self.mirrored.map_or(y, |side| side - y);
-        let waves = self.waves.iter().map(|[a, kx, ky, phase]| a * (TAU * (kx * x + ky * y + phase)).cos());
+        let waves = self.parts.iter().map(|[a, kx, ky, phase]| a * (TAU * (kx * x + ky * y + phase)).cos());
         self.factor * waves.sum::<f64>()
     }
 
@@ -108,7 +109,7 @@ impl Scene {
             let [kx, ky] = if kx.hypot(ky) > 5.0 || i == 0 { [1.0, 0.0] } else { [kx, ky] };
             [1e-3 * uniform(0.5, 1.5) / (1.0 + kx * kx + ky * ky), kx, ky, uniform(0.0, 1.0)]
         });
-        let surface = Waves { waves: waves.collect(), factor: 1.0, mirrored: None };
+        let surface = Waves { parts: waves.collect(), factor: 1.0, mirrored: None };
         let part = uniform(0.02, 0.3);
         let control = if features.contains(&Feature::Penetration) {
             Control::Penetration(1e-3 * part)
