@@ -51,8 +51,8 @@ const BYTES_PER_PLACE: f64 = 0.02;
 /// element of the base grid, and for the contact area.
 ///
 /// Fitted to 80 scenes of 192² to 1536² with two threads, love at 8 and 16 elements for the shortest wave, 1.2 to 50 %
-/// contact. The method that these choose takes at most 1.17 times as long as the better one, and 1.005 times in the mean;
-/// with eight threads 1.38 and 1.01.
+/// contact. The method that these choose takes at most 1.11 times as long as the better one, and 1.003 times in the mean;
+/// with eight threads 1.5 and 1.03.
 const FIXED_TIME: f64 = 8e4;
 const TIME_OF_BASE: f64 = 1.6;
 const TIME_OF_AREA: f64 = 5.0;
@@ -121,7 +121,8 @@ impl Estimate {
             tile_fraction,
             cells: n_cells,
             work: with_borders(MORE_WORK_PER_BORDER_LEVEL),
-            relative_time: (FIXED_TIME + TIME_OF_BASE * base.grid().len() as f64) / n_finest + TIME_OF_AREA * area_fraction,
+            relative_time: (FIXED_TIME + TIME_OF_BASE * base.grid().len() as f64) / n_finest
+                + TIME_OF_AREA * area_fraction,
             adaptive_bytes: cell_bytes + BYTES_PER_PLACE * n_finest + base_bytes(period),
         }
     }
