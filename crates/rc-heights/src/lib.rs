@@ -44,6 +44,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bicubic;
 mod error;
 mod formats;
 mod map;
@@ -59,6 +60,7 @@ pub mod suspicion;
 mod treat;
 mod units;
 
+pub use bicubic::Bicubic;
 pub use error::{FormatError, ReadError};
 pub use formats::nc_writer as netcdf;
 pub use formats::{

@@ -95,7 +95,8 @@ mod tests {
         let bench = to_csv(&rows()).expect("plain values");
         let scale = to_csv(&scale_rows()).expect("plain values");
         let files = [(BENCH, bench), (MACHINE, machine.clone()), (REFERENCE, reference), (SCALE, scale)];
-        let files = files.into_iter().chain([(SCALE_MACHINE, machine)]);
+        let steps = "side,method,step,part,seconds,memory_seconds\n256,uniform,heights,0.1,0.02,\n".to_owned();
+        let files = files.into_iter().chain([(SCALE_MACHINE, machine), (STEPS, steps)]);
         let files = files.chain(DOCUMENTS.map(|path| (path, document.clone())));
         files.map(|(path, text)| (path.to_owned(), text)).collect()
     }

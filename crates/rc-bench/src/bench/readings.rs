@@ -140,12 +140,12 @@ mod tests {
     /// Its counts exceed the area by `c` perimeters, and its perimeters are those of straight edges.
     fn peer(c: f64) -> Vec<Row> {
         let model = rows().pop().expect("a line of a peer");
-        let row = |(mesh, seconds): (usize, f64)| {
-            let side = 1.0 / mesh as f64;
+        let row = |(mesh, seconds): (f64, f64)| {
+            let side = 1.0 / mesh;
             let (area_counted, rms_pressure) = (0.07 + c * side, 4e-3 * (1.0 + side * side));
             Row { elements_per_wave: mesh, seconds, area_counted, rms_pressure, perimeter: side, ..model.clone() }
         };
-        [(4, 1.0), (8, 5.0), (16, 25.0)].map(row).to_vec()
+        [(4.0, 1.0), (8.0, 5.0), (16.0, 25.0)].map(row).to_vec()
     }
 
     fn of(rows: &[Row], quantity: Quantity, reading: Reading) -> Vec<Stated> {

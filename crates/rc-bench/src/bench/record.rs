@@ -199,7 +199,7 @@ pub(super) mod tests {
             case.outcomes.push(outcome(seconds, Some(area)));
             Row::of(&case).expect("one repeat")
         });
-        let peer = [(4, 30.0, 0.09), (8, 90.0, 0.0721)].map(|(mesh, seconds, counted)| {
+        let peer = [(4.0, 30.0, 0.09), (8.0, 90.0, 0.0721)].map(|(mesh, seconds, counted)| {
             let mut case = Case::of_peer(SCENES[0], TAMAAS, mesh, Tolerance::Relative(1e-6));
             case.outcomes.push(Outcome { area_counted: counted, ..outcome(seconds, None) });
             Row::of(&case).expect("one repeat")

@@ -209,12 +209,12 @@ mod tests {
         let small = Scene::named("waves-16").expect("a scene of the table");
         let meshes = |scene, with_peers| {
             let meshes = cases(scene, with_peers).into_iter().map(|case| case.setting.elements_per_wave);
-            (meshes.clone().min(), meshes.max())
+            [meshes.clone().fold(f64::INFINITY, f64::min), meshes.fold(0.0, f64::max)]
         };
         assert!(cases(small, false).iter().all(|case| case.peer.is_none()));
-        assert_eq!(meshes(small, true), (Some(COARSEST_OF_PEERS), Some(LARGEST_UNIFORM / small.waves)));
-        assert_eq!(meshes(small, false), (Some(MESHES[0]), Some(32)));
-        assert_eq!(meshes(SCENES[3], true).1, Some(32));
+        assert_eq!(meshes(small, true), [MESHES_OF_PEERS[0], 128.0]);
+        assert_eq!(meshes(small, false), [MESHES[0], 32.0]);
+        assert_eq!(meshes(SCENES[3], true), [MESHES_OF_PEERS[0], 32.0]);
     }
 
     #[test]
@@ -222,13 +222,16 @@ mod tests {
         let mut cases = cases(SCENES[0], true);
         let is_tamaas = |case: &Case| case.peer.is_some_and(|kind| kind.name == TAMAAS.name);
         let at: Vec<usize> = (0..cases.len()).filter(|&i| is_tamaas(&cases[i])).collect();
-        assert!(expected(&cases, at[0]).abs() < 1e-15 && expected(&cases, at[1]).abs() < 1e-15);
-        cases[at[1]].outcomes.push(outcome(2.0, None));
-        assert!((expected(&cases, at[2]) - 2.0 * GROWTH).abs() < 1e-12);
-        assert!(expected(&cases, at[3]).is_infinite());
-        // Tamaas uses one thread, so its limit of 10 s corresponds to 20 s of the others.
-        assert!(is_too_long(&cases, at[2], 4.0 * GROWTH - 0.1) && !is_too_long(&cases, at[2], 4.0 * GROWTH + 0.1));
-        cases[at[1]].outcomes.push(outcome(ENOUGH, None));
-        assert!(cases[at[1]].is_done() && !cases[at[2]].is_done());
+        // Two, three, four, six and eight elements for the shortest wave.
+        assert!(at[..3].iter().all(|&i| expected(&cases, i).abs() < 1e-15));
+        cases[at[2]].outcomes.push(outcome(2.0, None));
+        let expectation = 2.0 * GROWTH.powf(1.5_f64.log2());
+        assert!((expected(&cases, at[3]) - expectation).abs() < 1e-12);
+        assert!(expected(&cases, at[4]).is_infinite());
+        // Tamaas uses one thread, so its limit is half of that of the others.
+        let limit = 2.0 * expectation;
+        assert!(is_too_long(&cases, at[3], limit - 0.1) && !is_too_long(&cases, at[3], limit + 0.1));
+        cases[at[2]].outcomes.push(outcome(ENOUGH, None));
+        assert!(cases[at[2]].is_done() && !cases[at[3]].is_done());
     }
 }

@@ -198,6 +198,6 @@ mod tests {
         let (reached, ratio) = results.peer("tamaas", area(1e-2));
         assert_eq!((reached.reading, reached.n, reached.n_true), (Reading::Published, 1, 1));
         assert_eq!(ratio, Some(Ratio { value: 120.0 / 0.75, is_bound: false }));
-        assert_eq!(results.on_mesh("paper", rows[4].family(), 8), Some(90.0));
+        assert_eq!(results.on_mesh("paper", rows[4].family(), 8.0), Some(90.0));
     }
 }

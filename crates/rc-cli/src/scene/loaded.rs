@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use rc_core::{Boundary, Field, Grid, HeightField as _, HeightSource};
 use rc_fractal::{Moments, Surface, height_and_slope_of_grid, height_and_slope_of_patch, moments_of_grid};
+use rc_heights::Bicubic;
 use rc_sweep::{MapOrigin, Warning};
 
 use super::as_read::AsRead;
@@ -102,11 +103,16 @@ impl LoadedSurface {
         self.shape.on(self.grid)
     }
 
-    /// The heights of a contact problem on the finest grid.
+    /// The heights of a contact problem on the finest grid, whose borders are divided `border_level` times.
     ///
-    /// Those of a sum of waves are not evaluated yet.
+    /// Those of a sum of waves are not evaluated yet. Heights between the points of a square map are bicubic.
     #[must_use]
-    pub fn source(&self) -> HeightSource<'static> {
+    pub fn source(&self, border_level: usize, boundary: Boundary) -> HeightSource<'static> {
+        if let (Shape::Map { heights, .. }, 1..) = (&self.shape, border_level)
+            && let Some(surface) = Bicubic::new(Arc::clone(heights), boundary)
+        {
+            return HeightSource::shared(Arc::new(surface), self.grid);
+        }
         match &self.shape {
             Shape::Random(surface) => HeightSource::shared(Arc::<Surface>::clone(surface), self.grid),
             Shape::Waves(file) => HeightSource::shared(Arc::<Surface>::clone(file.surface()), self.grid),

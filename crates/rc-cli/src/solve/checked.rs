@@ -65,15 +65,19 @@ impl CheckedScene {
         is_map: bool,
         surface: impl FnOnce() -> Result<SurfaceSetup, CliError>,
     ) -> Result<Self, CliError> {
-        features::check(&contact, is_map.then_some(Feature::HeightMap))?;
         let area_error = contact.area_error;
+        let is_interpolated = is_map && area_error.is_none() && contact.border_level.is_some_and(|level| level > 0);
+        features::check(&contact, (is_map && !is_interpolated).then_some(Feature::HeightMap))?;
         let contact = if area_error.is_some() {
             let auto = contact.energy_tolerance.is_none().then_some(ToleranceSpec::Auto);
             ContactKeys { area_error: None, tolerance: contact.tolerance.or(auto), ..contact }
         } else {
             contact
         };
-        let surface = surface()?;
+        let mut surface = surface()?;
+        if is_interpolated {
+            surface.assumed.push("bicubic heights between the points of the map, for its border levels".to_owned());
+        }
         let contact = ContactSetup { grid_is_chosen: area_error.is_some(), ..resolve::contact(contact, surface.cell)? };
         let surface = surface.bounded(contact.boundary)?;
         Ok(Self { surface, contact, area_error })

@@ -20,7 +20,7 @@ pub(super) fn in_si(error: &SolveError, surface: &LoadedSurface, contact: &Conta
         SolveError::Adaptive(AdaptiveError::OperatorError { .. }) => CliError::input(format_args!(
             "{}: {:e} is less than the adaptive method can certify; give a larger value, or --method uniform",
             tolerance_key(contact),
-            contact.params.tolerance.bound(surface.source().elements_per_wave()).value()
+            contact.params.tolerance.bound(surface.source(0, contact.boundary).elements_per_wave()).value()
         )),
         SolveError::Adaptive(error) => of_adaptive(error, contact, budget),
         SolveError::GaussSeidel(error) => CliError::input(format_args!("method gauss-seidel: {error}")),

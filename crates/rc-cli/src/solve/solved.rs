@@ -125,7 +125,7 @@ impl<'a> ProblemSetup<'a> {
     pub(crate) fn of_row(&self, kernel: Arc<dyn Kernel + Send + Sync>) -> Result<RowProblem, CliError> {
         self.check_grid()?;
         Ok(RowProblem {
-            heights: self.surface.source(),
+            heights: self.source(),
             kernel: Some(kernel),
             control: self.contact.control,
             hardness: self.contact.hardness,
@@ -210,8 +210,12 @@ impl<'a> ProblemSetup<'a> {
         self.contact.keys.output_grid.map_or(Ok(()), |spec| check_factor(self.surface.grid, spec))
     }
 
+    fn source(&self) -> HeightSource<'static> {
+        self.surface.source(self.contact.params.border_level, self.contact.boundary)
+    }
+
     fn contact_problem(&self) -> ContactProblem<'a> {
-        let problem = ContactProblem::new(self.surface.source(), self.contact.control);
+        let problem = ContactProblem::new(self.source(), self.contact.control);
         let problem = problem.with_hardness(self.contact.hardness).with_kernel(self.kernel);
         let Place { ranks, checkpoint } = &self.contact.place;
         let problem = problem.over(ranks.clone());

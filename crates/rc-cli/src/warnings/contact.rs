@@ -35,7 +35,7 @@ pub(crate) fn before(surface: &LoadedSurface, contact: &ContactSetup) -> Vec<War
     if let Control::MeanPressure(mean) = contact.control {
         found.extend(mean_pressure(mean, contact));
     }
-    found.extend(coarse(&surface.source(), contact));
+    found.extend(coarse(&surface.source(0, contact.boundary), contact));
     found
 }
 

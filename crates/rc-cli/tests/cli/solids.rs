@@ -276,7 +276,6 @@ fn what_does_not_go_with_a_patch_is_refused() {
             &["--method", "gauss-seidel"],
             "method: the method gauss-seidel cannot be combined with free borders: it solves on a periodic cell only; give adaptive or uniform",
         ),
-        (&["--border-level", "1"], "a map has no heights between its points"),
         (
             &["--layer-thickness", "1e-3", "--layer-poisson", "0.3"],
             "boundary: free borders cannot be combined with an elastic layer",

@@ -161,7 +161,11 @@ const PAIRS: [(Feature, Feature, &str); 53] = [
     (History, AreaError, "its loads follow each other on one grid (give grid instead)"),
     (History, Checkpoint, "it is of one load only"),
     (History, Sweep, "the rows of a sweep are independent of each other"),
-    (BorderLevel, HeightMap, "a map has no heights between its points (resample it on a finer grid instead)"),
+    (
+        BorderLevel,
+        HeightMap,
+        "a map has no heights between its points (interpolate a square map, as rc_heights::Bicubic does)",
+    ),
     (BorderLevel, OblongGrid, "it divides square grids only"),
     (BorderLevel, UnevenGrid, "it needs a small number times a large power of 2, such as 1024 or 1536 elements"),
     (AreaError, HeightMap, "a map has its own grid, which cannot be chosen"),

@@ -1,6 +1,6 @@
 //! The features of a problem that the table of capabilities knows.
 
-use rc_core::{Boundary, DVec2, HeightField};
+use rc_core::{Boundary, DVec2};
 
 use crate::levels::base_grid::base_sides;
 use crate::problem::capabilities::{Feature, Refusal, refusal};
@@ -29,7 +29,7 @@ pub(crate) fn features(problem: &ContactProblem<'_>, params: &SolveParams) -> Ve
         (Feature::FreeBorders, problem.boundary() == Boundary::Free),
         (Feature::Penetration, matches!(problem.control, Control::Penetration(_))),
         (Feature::Hardness, problem.hardness.is_finite()),
-        (Feature::HeightMap, heights.surface().and_then(HeightField::band_limit).is_none()),
+        (Feature::HeightMap, heights.map().is_some()),
         (Feature::OblongGrid, !heights.grid().is_square()),
         (Feature::OblongElements, !has_squares(heights.grid())),
         (Feature::UnevenGrid, (has_border || has_ranks) && is_uneven(problem, params)),

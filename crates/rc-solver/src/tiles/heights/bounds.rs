@@ -67,7 +67,7 @@ impl Bounds {
             offset,
             remainder: 0.0,
             scale,
-            curvature: f64::INFINITY,
+            curvature: second_differences(map),
         }
     }
 
@@ -109,9 +109,7 @@ impl Bounds {
         self.height(self.pyramid.leaf(place))
     }
 
-    /// Upper bound of |∂²h/∂x²| and |∂²h/∂y²| everywhere.
-    ///
-    /// It is infinite for a map, whose heights between elements are not known.
+    /// Upper bound of |∂²h/∂x²| and |∂²h/∂y²| everywhere; for a map, of the second differences of its elements.
     pub(super) fn curvature(&self) -> f64 {
         self.curvature
     }
@@ -129,6 +127,20 @@ impl Bounds {
     fn height(&self, bound: f32) -> f64 {
         self.offset + (self.remainder + self.scale * f64::from(bound))
     }
+}
+
+/// Largest second difference of heights along an axis, divided by the square of the spacing, in 1/λ.
+fn second_differences(map: &Field) -> f64 {
+    let (grid, spacing) = (map.grid(), map.grid().spacing());
+    let of_row = |iy: usize| {
+        let row = map.row(iy);
+        let (above, below) = (map.row((iy + 1) % grid.ny()), map.row((iy + grid.ny() - 1) % grid.ny()));
+        let along_x = row.iter().zip(row.iter().cycle().skip(1)).zip(row.iter().cycle().skip(2));
+        let along_x = along_x.map(|((a, b), c)| (a - 2.0 * b + c).abs()).fold(0.0, f64::max);
+        let along_y = above.iter().zip(row).zip(below).map(|((a, b), c)| (a - 2.0 * b + c).abs()).fold(0.0, f64::max);
+        (along_x / (spacing.x * spacing.x)).max(along_y / (spacing.y * spacing.y))
+    };
+    (0..grid.ny()).into_par_iter().map(of_row).reduce(|| 0.0, f64::max)
 }
 
 /// The unit in which bounds are stored.
