@@ -12,6 +12,7 @@ pub(crate) mod solution;
 
 mod certificate;
 mod discs;
+mod free;
 mod operator;
 mod problem;
 mod response;
