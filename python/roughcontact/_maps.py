@@ -103,6 +103,14 @@ def as_heights(heights: Any) -> Floats:
     return array
 
 
+def as_field(name: str, values: Any) -> Floats:
+    """Values of elements as an array of float64, row by row."""
+    try:
+        return as_heights(values)
+    except ValueError as cause:
+        raise ValueError(str(cause).replace("heights", name)) from None
+
+
 def as_profile(heights: Any) -> Floats:
     """The heights of a profile as an array of one row."""
     array = heights.heights if isinstance(heights, HeightMap) else np.asarray(heights)
