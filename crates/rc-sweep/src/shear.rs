@@ -25,7 +25,7 @@ pub struct ShearSummary {
     pub slip_work: f64,
     /// Bound √(G/U) of the relative error of the tractions in the energy norm, for this pressure.
     pub shear_error: f64,
-    /// Rounds of projected conjugate gradients that corrected the difference of two normal contacts.
+    /// Rounds of projected gradients that corrected the difference of two normal contacts.
     pub shear_rounds: usize,
     /// What the shear neglects, if anything.
     #[serde(default, skip_serializing_if = "Option::is_none")]

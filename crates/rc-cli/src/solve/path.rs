@@ -10,7 +10,8 @@ pub(super) fn difference(steps: usize, heights: &Field, [one, stepped]: [&Histor
     let relative = |of: &dyn Fn(&History<'_>) -> f64| {
         let [before, after] = [of(one), of(stepped)];
         // Without flow in both there is no difference.
-        if before == after { 0.0 } else { after / before - 1.0 }
+        let difference = after - before;
+        if difference.abs() > 0.0 { difference / before } else { 0.0 }
     };
     PathDifference {
         steps,

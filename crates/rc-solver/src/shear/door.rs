@@ -30,7 +30,7 @@ impl Plan<'_> {
     ///
     /// The plan is one of the same problem, as [`Plan::under`] makes it, and its load is not used. The normal contact
     /// keeps its pressure. A second one under the load σ0 - τ/μ gives the traction μ (p - p'), which for ν = 0 is exact.
-    /// It is corrected by projected conjugate gradients until [`ShearInfo::error`] is at most the tolerance of the energy error,
+    /// It is corrected by projected gradients until [`ShearInfo::error`] is at most the tolerance of the energy error,
     /// or 0.01 if the tolerance is relative to the height.
     ///
     /// ```

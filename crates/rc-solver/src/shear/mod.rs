@@ -12,7 +12,6 @@ pub(crate) mod solution;
 
 mod certificate;
 mod discs;
-mod free;
 mod operator;
 mod problem;
 mod response;

@@ -21,10 +21,6 @@ pub(super) struct TangentialOperator {
     around: Grid,
     /// Factors xx, yy and xy of each wave of the half plane, with that of the inverse transform.
     factors: Vec<[f64; 3]>,
-    /// The same for the inverse response of each wave.
-    inverse: Vec<[f64; 3]>,
-    /// Displacement of an element by a traction of 1 on it, in λ.
-    pub(super) own: f64,
 }
 
 impl TangentialOperator {
@@ -33,38 +29,24 @@ impl TangentialOperator {
     /// Only with free borders may the part be smaller than the grid.
     pub(super) fn new((grid, part): (Grid, Grid), kernel: &dyn Kernel, poisson: f64) -> Self {
         let ratio = poisson / (1.0 - poisson);
-        let (grid, around, factors) = match kernel.free_response(grid) {
+        match kernel.free_response(grid) {
             Some(response) => {
                 let around = padded_grid(part);
-                (part, around, of_responses((part, around), grid.spacing(), (ratio, &response)))
+                let factors = of_responses((part, around), grid.spacing(), (ratio, &response));
+                Self { grid: part, around, factors }
             }
-            None => (grid, grid, of_symbol(grid, ratio, &kernel.symbol(grid))),
-        };
-        let inverse = inverse_of(&factors, around);
-        let mut operator = Self { grid, around, factors, inverse, own: 0.0 };
-        let mut unit = [Field::zeros(operator.grid), Field::zeros(operator.grid)];
-        unit[0].values_mut()[0] = 1.0;
-        operator.own = operator.apply(&unit)[0].values()[0];
-        operator
+            None => Self { grid, around: grid, factors: of_symbol(grid, ratio, &kernel.symbol(grid)) },
+        }
     }
 
     /// The displacements by the tractions along x and y.
     pub(super) fn apply(&self, traction: &[Field; 2]) -> [Field; 2] {
-        self.convolved(traction, &self.factors)
-    }
-
-    /// About the tractions that cause these displacements, without what holds at the borders of contacts.
-    pub(super) fn approximate_inverse(&self, displacement: &[Field; 2]) -> [Field; 2] {
-        self.convolved(displacement, &self.inverse)
-    }
-
-    fn convolved(&self, traction: &[Field; 2], factors: &[[f64; 3]]) -> [Field; 2] {
         let mut waves = traction.each_ref().map(|field| {
             let padded = if self.around == self.grid { None } else { Some(padded(field, self.around)) };
             half_plane_values(padded.as_ref().unwrap_or(field), 0.0, |wave| wave)
         });
         let [x, y] = &mut waves;
-        let along_both = x.par_iter_mut().zip(y.par_iter_mut()).zip(factors.par_iter());
+        let along_both = x.par_iter_mut().zip(y.par_iter_mut()).zip(self.factors.par_iter());
         along_both.for_each(|((x, y), [xx, yy, xy])| {
             let (of_x, of_y): (Complex64, Complex64) = (*x, *y);
             *x = of_x * *xx + of_y * *xy;
@@ -102,18 +84,6 @@ fn of_symbol(grid: Grid, ratio: f64, symbol: &(dyn Fn(usize, usize) -> f64 + Syn
         [part(along.x), part(along.y), -normal * ratio * across]
     };
     (0..(nx / 2 + 1) * ny).into_par_iter().map(of_wave).collect()
-}
-
-/// Factors of the inverse response of each wave. Where a response is not positive, it is left out.
-///
-/// The response of a padded grid is that of an isolated element, so that a few waves may have a negative one.
-fn inverse_of(factors: &[[f64; 3]], around: Grid) -> Vec<[f64; 3]> {
-    let scale = (around.len() as f64).recip().powi(2);
-    let of_wave = |&[xx, yy, xy]: &[f64; 3]| {
-        let determinant = xx * yy - xy * xy;
-        if xx > 0.0 && determinant > 0.0 { [yy, xx, -xy].map(|factor| scale * factor / determinant) } else { [0.0; 3] }
-    };
-    factors.par_iter().map(of_wave).collect()
 }
 
 /// Factors from the responses to one element, which are zero beyond the elements of `grid`.

@@ -1,30 +1,27 @@
-//! Corrections of tangential tractions by projected conjugate gradients.
+//! Corrections of tangential tractions by an accelerated projected gradient.
 //!
-//! The traction minimises ½⟨t·`L_T` t⟩ - d·⟨t⟩ over discs |t| ≤ μp, with a given d or a given mean. Elements that stick
-//! move freely, those that slip along the border of their disc. Directions are those of conjugate gradients with the
-//! inverse response of each wave as preconditioner. A step goes to the projection of its end, or as far towards it as the
-//! energy falls, and applies `L_T` once.
+//! The traction minimises ½⟨t·`L_T` t⟩ - d·⟨t⟩ over discs |t| ≤ μp, with a given d or a given mean. Each round applies
+//! `L_T` once (Beck & Teboulle, SIAM J. Imaging Sci. 2, 2009, with the restart of O'Donoghue & Candès, Found. Comput.
+//! Math. 15, 2015).
 
 use rc_core::{DVec2, Observer};
 
 use crate::shear::certificate::Bound;
 use crate::shear::discs;
-use crate::shear::free::Free;
 use crate::shear::operator::TangentialOperator;
 use crate::shear::problem::{Contact, Prescribed};
 
 /// Maximum number of rounds.
-const MOST_ROUNDS: usize = 1000;
+const MOST_ROUNDS: usize = 3000;
 
 /// Rounds between two looks at the certificate.
-const BETWEEN_BOUNDS: usize = 2;
+const BETWEEN_BOUNDS: usize = 4;
 
 /// Part of the tolerance to which the iteration goes, as that of the pressure.
 const AIM: f64 = 0.3;
 
-/// Bounds of the length of a step relative to its direction.
-const SHORTEST: f64 = 0.1;
-const LONGEST: f64 = 10.0;
+/// Rounds of the estimate of the largest eigenvalue.
+const POWER_ROUNDS: usize = 6;
 
 /// Tractions with their displacements and the bound on their error.
 pub(super) struct Tractions {
@@ -41,25 +38,6 @@ pub(super) struct Rounds<'a> {
     pub(super) operator: &'a TangentialOperator,
     pub(super) contact: &'a Contact,
     pub(super) prescribed: Prescribed,
-}
-
-/// The last direction, with what conjugates the next one to it.
-struct Last {
-    direction: Vec<DVec2>,
-    residual: Vec<DVec2>,
-    /// Product of the residual and the preconditioned one.
-    product: f64,
-}
-
-/// A change of all tractions, to the end of a step.
-struct Change {
-    vectors: Vec<DVec2>,
-    /// How fast the energy falls at first.
-    slope: f64,
-    /// Length of the step.
-    length: f64,
-    /// Whether it is against the gradient, so that directions begin anew.
-    restarts: bool,
 }
 
 impl Rounds<'_> {
@@ -86,21 +64,23 @@ impl Rounds<'_> {
     pub(super) fn correct(&self, start: Tractions, tolerance: f64, observer: &dyn Observer) -> Tractions {
         let mut best = start;
         let (mut now, mut displaced) = (best.vectors.clone(), best.displacements.clone());
-        let (mut last, mut length) = (None, 1.0);
+        let (mut ahead, mut ahead_displaced) = (now.clone(), displaced.clone());
+        let (mut momentum, mut largest) = (1.0_f64, self.largest_eigenvalue(&now));
         for round in 1..=MOST_ROUNDS {
             if observer.should_stop() {
                 break;
             }
-            let (free, residual) = self.free(&now, &displaced, best.bound.displacement);
-            let direction = self.direction(&free, residual, &mut last);
-            let Some(change) = self.change(&free, &now, &direction, length) else { break };
-            if change.restarts {
-                last = None;
-            }
-            let part = self.advance((&mut now, &mut displaced), &change);
-            if !change.restarts {
-                length = (change.length * part).clamp(SHORTEST, LONGEST);
-            }
+            let (next, next_displaced) = self.step(&ahead, &ahead_displaced, &mut largest);
+            let turned: f64 =
+                next.iter().zip(&ahead).zip(&now).map(|((next, ahead), now)| (*ahead - *next).dot(*next - *now)).sum();
+            let following = 0.5 * (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt());
+            let part = if turned > 0.0 { 0.0 } else { (momentum - 1.0) / following };
+            momentum = if turned > 0.0 { 1.0 } else { following };
+            let beyond = |next: &[DVec2], now: &[DVec2]| -> Vec<DVec2> {
+                next.iter().zip(now).map(|(next, now)| *next + part * (*next - *now)).collect()
+            };
+            (ahead, ahead_displaced) = (beyond(&next, &now), beyond(&next_displaced, &displaced));
+            (now, displaced) = (next, next_displaced);
             if round % BETWEEN_BOUNDS == 0 {
                 let bound = self.bound(&now, &displaced, best.bound.displacement);
                 if bound.gap < best.bound.gap {
@@ -117,85 +97,43 @@ impl Rounds<'_> {
         Tractions { rounds, ..self.certified(best.vectors, best.bound.displacement) }
     }
 
-    /// How each element may move, and the residual of these motions. `guess` is one of d.
-    fn free(&self, tractions: &[DVec2], displacements: &[DVec2], guess: DVec2) -> (Free, Vec<DVec2>) {
-        let limits = &self.contact.limits;
-        match self.prescribed {
-            Prescribed::Displacement(given) => {
-                let free = Free::new((tractions, limits), displacements, given, self.operator.own);
-                let residual = free.residual();
-                (free, residual)
-            }
-            Prescribed::Total(_) => {
-                // The elements that stick tell d, which tells the elements that stick.
-                let first = Free::new((tractions, limits), displacements, guess, self.operator.own);
-                let given = guess + first.mean_gradient();
-                let free = Free::new((tractions, limits), displacements, given, self.operator.own);
-                let mut residual = free.residual();
-                free.balance(&mut residual);
-                (free, residual)
-            }
-        }
-    }
-
-    /// The direction of conjugate gradients for `residual`.
-    fn direction(&self, free: &Free, residual: Vec<DVec2>, last: &mut Option<Last>) -> Vec<DVec2> {
-        let mut scaled = residual.clone();
-        free.scale(&mut scaled);
-        let fields = self.operator.approximate_inverse(&self.contact.on_part(&scaled));
-        let mut preconditioned = self.contact.vectors(&fields);
-        free.scale(&mut preconditioned);
-        free.confine(&mut preconditioned);
-        if matches!(self.prescribed, Prescribed::Total(_)) {
-            free.balance(&mut preconditioned);
-        }
-        let product = dot(&residual, &preconditioned);
-        let mut direction = preconditioned;
-        if let Some(last) = last {
-            let change = product - dot(&direction, &last.residual);
-            let part = (change / last.product).max(0.0);
-            free.confine(&mut last.direction);
-            for (now, before) in direction.iter_mut().zip(&last.direction) {
-                *now += part * *before;
-            }
-            if matches!(self.prescribed, Prescribed::Total(_)) {
-                free.balance(&mut direction);
-            }
-        }
-        *last = Some(Last { direction: direction.clone(), residual, product });
-        direction
-    }
-
-    /// A change of the tractions `now` that lowers the energy at first: to the discs from the end of a step of `length`
-    /// along the direction, of a shorter one, or of one against the gradient. `None` at the minimum.
-    fn change(&self, free: &Free, now: &[DVec2], direction: &[DVec2], length: f64) -> Option<Change> {
-        let down = || free.gradient.iter().map(|g| -*g / self.operator.own).collect::<Vec<_>>();
-        let to = |direction: &[DVec2], length: f64, to_border: bool| {
-            let mut end: Vec<DVec2> = now.iter().zip(direction).map(|(t, p)| *t + length * *p).collect();
-            if to_border {
-                free.to_border(&mut end, &self.contact.limits);
-            }
-            self.project(&mut end);
-            end.iter_mut().zip(now).for_each(|(end, t)| *end -= *t);
-            let slope = -dot(&free.gradient, &end);
-            (slope > 0.0).then_some(Change { vectors: end, slope, length, restarts: false })
+    /// A step against the gradient, and its displacements. `largest` grows if it is not above all eigenvalues.
+    fn step(&self, from: &[DVec2], displaced: &[DVec2], largest: &mut f64) -> (Vec<DVec2>, Vec<DVec2>) {
+        let given = match self.prescribed {
+            Prescribed::Total(_) => DVec2::ZERO,
+            Prescribed::Displacement(given) => given,
         };
-        let lengths = [1.0, 0.25, 0.0625].map(|part| part * length);
-        let found = lengths.iter().find_map(|&length| to(direction, length, true));
-        let found = found.or_else(|| to(direction, length, false));
-        found.or_else(|| Some(Change { restarts: true, ..to(&down(), 1.0, false)? }))
+        loop {
+            let mut next: Vec<DVec2> = from.iter().zip(displaced).map(|(t, v)| *t - (*v - given) / *largest).collect();
+            self.project(&mut next);
+            let next_displaced = self.apply(&next);
+            let (mut squares, mut work) = (0.0, 0.0);
+            for ((next, from), (after, before)) in next.iter().zip(from).zip(next_displaced.iter().zip(displaced)) {
+                squares += (*next - *from).length_squared();
+                work += (*next - *from).dot(*after - *before);
+            }
+            if work <= *largest * squares * (1.0 + 1e-9) {
+                return (next, next_displaced);
+            }
+            *largest = (1.5 * *largest).max(work / squares);
+        }
     }
 
-    /// Makes the change, or the part of it at which the energy is lowest. The result is that part, which may be above 1.
-    fn advance(&self, (now, displaced): (&mut [DVec2], &mut [DVec2]), change: &Change) -> f64 {
-        let displacements = self.apply(&change.vectors);
-        let part = change.slope / dot(&change.vectors, &displacements);
-        let taken = part.min(1.0);
-        for ((t, v), (dt, dv)) in now.iter_mut().zip(displaced).zip(change.vectors.iter().zip(&displacements)) {
-            *t += taken * *dt;
-            *v += taken * *dv;
+    /// About the largest eigenvalue of `L_T` on the elements in contact.
+    fn largest_eigenvalue(&self, start: &[DVec2]) -> f64 {
+        let mut vector = start.to_vec();
+        let mut value = f64::MIN_POSITIVE;
+        for _ in 0..POWER_ROUNDS {
+            let next = self.apply(&vector);
+            let length = |vector: &[DVec2]| vector.iter().map(|v| v.length_squared()).sum::<f64>().sqrt();
+            let (before, after) = (length(&vector), length(&next));
+            if before == 0.0 || after == 0.0 {
+                break;
+            }
+            value = after / before;
+            vector = next.into_iter().map(|v| v / after).collect();
         }
-        part
+        value
     }
 
     fn apply(&self, tractions: &[DVec2]) -> Vec<DVec2> {
@@ -208,9 +146,4 @@ impl Rounds<'_> {
             Prescribed::Displacement(given) => Bound::at(self.contact, tractions, displacements, given),
         }
     }
-}
-
-/// Σ a·b.
-fn dot(a: &[DVec2], b: &[DVec2]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum()
 }

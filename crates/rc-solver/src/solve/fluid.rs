@@ -97,7 +97,7 @@ impl<'a> ContactProblem<'a> {
         let bound = params.tolerance.bound(self.heights.elements_per_wave());
         let params = SolveParams { tolerance: bound.into(), ..*params };
         let support = Support::of(self.kernel.get(), self.heights.grid());
-        let is_uniform = pressure.min() == pressure.max() && support.boundary == Boundary::Periodic;
+        let is_uniform = pressure.min() >= pressure.max() && support.boundary == Boundary::Periodic;
         let problem = if is_uniform || pressure.max() == 0.0 {
             let mean_displacement = support.compliance * pressure.values()[0];
             let (bent, rise, summit_excess) = (None, 0.0, None);
