@@ -106,9 +106,12 @@ def as_heights(heights: Any) -> Floats:
 def as_field(name: str, values: Any) -> Floats:
     """Values of elements as an array of float64, row by row."""
     try:
-        return as_heights(values)
-    except ValueError as cause:
-        raise ValueError(str(cause).replace("heights", name)) from None
+        array = np.require(np.asarray(values), np.float64, ["C", "A"])
+    except (TypeError, ValueError) as cause:
+        raise ValueError(f"{name}: must be a 2-D array of numbers, shape (ny, nx): {cause}") from None
+    if array.ndim != 2:
+        raise ValueError(f"{name}: must be a 2-D array, one value for each element, not of shape {array.shape}")
+    return array
 
 
 def as_profile(heights: Any) -> Floats:
