@@ -22,7 +22,7 @@ fn number(summary: &serde_json::Value, key: &str) -> f64 {
 #[test]
 fn a_uniform_fluid_is_the_contact_under_the_rest_of_the_load() {
     let place = Place::new();
-    place.write("fluid.txt", &map(|_, _| 262_144.0));
+    place.write("fluid.txt", map(|_, _| 262_144.0));
     for method in ["adaptive", "uniform"] {
         let fluid = ["--pressure", "1048576", "--fluid-pressure", "fluid.txt", "--method", method, "--out", "wet"];
         assert_solved(&place.run(&with(&fluid)));
@@ -44,7 +44,7 @@ fn a_uniform_fluid_is_the_contact_under_the_rest_of_the_load() {
 #[test]
 fn a_result_under_a_fluid_is_repeated_by_its_scene_and_drawn() {
     let place = Place::new();
-    place.write("fluid.txt", &map(|iy, ix| 1e4 * (ix + iy / 8) as f64));
+    place.write("fluid.txt", map(|iy, ix| 1e4 * (ix + iy / 8) as f64));
     let free = ["--boundary", "free", "--penetration", "10um", "--fluid-pressure", "fluid.txt", "--out", "wet"];
     assert_solved(&place.run(&with(&free)));
     assert_solved(&place.run(&["solve", "wet/scene.toml", "--out", "twin", "--quiet"]));
@@ -66,9 +66,9 @@ fn a_result_under_a_fluid_is_repeated_by_its_scene_and_drawn() {
 #[test]
 fn a_fluid_that_cannot_be_solved_under_is_refused_in_one_line() {
     let place = Place::new();
-    place.write("fluid.txt", &map(|_, ix| 1e4 * ix as f64));
+    place.write("fluid.txt", map(|_, ix| 1e4 * ix as f64));
     place.write("small.txt", "1 2 3\n4 5 6\n7 8 9\n");
-    place.write("negative.txt", &map(|iy, ix| if (iy, ix) == (2, 5) { -1.0 } else { 1.0 }));
+    place.write("negative.txt", map(|iy, ix| if (iy, ix) == (2, 5) { -1.0 } else { 1.0 }));
     let cases = [
         (
             &["--pressure", "1e6", "--fluid-pressure", "small.txt"][..],
