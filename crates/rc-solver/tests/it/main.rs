@@ -13,6 +13,7 @@ mod history;
 mod observers;
 mod operators;
 mod over_ranks;
+mod properties;
 mod shear;
 mod sliding;
 mod split;
