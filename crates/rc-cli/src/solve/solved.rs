@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use rc_core::{Boundary, Field, Kernel, Observer};
+use rc_core::{Boundary, Field, HeightSource, Kernel, Observer};
 use rc_solver::{ContactProblem, Cost, FluidProblem, History, Plan, Solution, SolveError, SolveParams, UnderFluid};
 use rc_sweep::memory::Budget;
 use rc_sweep::{PathDifference, RowProblem, SolvedRow, Summary, Warning};
