@@ -12,6 +12,7 @@ use crate::descent::contact_element::ContactElement;
 use crate::descent::info::{SolveInfo, Status};
 use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
 use crate::descent::stiffness::{elastic_part, least_rise, stiffness_by_gmres, stiffness_pressure, stiffness_under};
+use crate::parallel;
 use crate::solution::contact_area::area::ContactArea;
 use crate::solution::contact_area::plastic::PlasticEdges;
 use crate::solution::gap_part::GapPart;
@@ -293,8 +294,9 @@ fn row_of_tiles(tiles: &TileSet, values: &[f64], row: usize) -> Vec<f64> {
 
 /// Root mean square over the whole cell.
 pub(crate) fn rms_pressure(elements: &Mesh, pressure: &[f64]) -> f64 {
-    let squares = pressure.par_chunks(BLOCK_CELLS).map(|p| [p.iter().map(|p| p * p).sum()]).collect();
-    let [squares] = elements.layout().total(squares);
+    let layout = elements.layout();
+    let squares = parallel::map(layout.chunks(pressure), |p| [p.iter().map(|p| p * p).sum()]);
+    let [squares] = layout.total(squares);
     let n_cell: usize = elements.finest().sides().into_iter().product();
     (squares / n_cell as f64).sqrt()
 }

@@ -36,12 +36,10 @@ use crate::tiles::part::{Part, blocks, own_blocks};
 struct Level {
     /// Factors on means over the finest elements of cells, and on P u. Those of the base grid are in rows.
     parts: Parts,
-    /// Means and u on the way up. On the way down, the values for u.
+    /// Means and u on the way up, then the stencil of w, a pressure. On the way down, the values for u.
     values: Vec<f32>,
     /// Values w. On the way down, the values for the coarser level.
     detail: Vec<f32>,
-    /// The stencil of w, a pressure.
-    pressure: Vec<f32>,
 }
 
 /// Values of the extension on one hierarchy.
@@ -61,7 +59,7 @@ impl TileExtension {
         let level = |part: &Part| {
             let n = part.n_cells();
             let zeros = || vec![0.0; n];
-            Level { parts: Parts::new(n), values: zeros(), detail: zeros(), pressure: zeros() }
+            Level { parts: Parts::new(n), values: zeros(), detail: zeros() }
         };
         let levels = hierarchy.levels[..hierarchy.n_levels()].iter().map(level).collect();
         Self { levels, rows: vec![0.0; sides[0] * sides[1]], coarser: Extension::new(sides), hierarchy }
@@ -154,7 +152,7 @@ impl TileExtension {
         for (level, part) in self.hierarchy.levels.iter().enumerate().skip(1) {
             let taps = &tables.levels[level - 1].0;
             let (detail, cells) = match self.levels.get_mut(level) {
-                Some(here) => (&*here.detail, &mut here.pressure[part.own_cells()]),
+                Some(here) => (&*here.detail, &mut here.values[part.own_cells()]),
                 None => (finest, &mut *values),
             };
             let around = TileValues::new(detail, part.tiles());
@@ -196,18 +194,21 @@ impl TileExtension {
             let (here, finer) = self.levels.split_at_mut(level + 1);
             let finer = finer.first().map_or(&*finest, |finer| &finer.detail);
             let finer = TileValues::new(finer, hierarchy.levels[level + 1].tiles());
-            let Level { parts, values, detail, pressure } = &mut here[level];
+            let Level { parts, values, detail } = &mut here[level];
             if level == 0 {
                 set_base(hierarchy, values, |places, cells| collect(finer, places, cells));
                 continue;
             }
             let (part, own) = (&hierarchy.levels[level], hierarchy.levels[level].own_cells());
-            let others = parts.rest[own.clone()].chunks(BLOCK_CELLS).zip(pressure[own.clone()].chunks(BLOCK_CELLS));
-            let blocks = own_blocks(part, values).zip(detail[own].chunks_mut(BLOCK_CELLS)).zip(others);
-            parallel::for_each(blocks, |(((places, values), given), (rest, pressure))| {
-                collect(finer, places, values);
-                for ((value, given), (rest, pressure)) in values.iter_mut().zip(given).zip(rest.iter().zip(pressure)) {
-                    *value += pressure;
+            let rest = parts.rest[own.clone()].chunks(BLOCK_CELLS);
+            let blocks = own_blocks(part, values).zip(detail[own].chunks_mut(BLOCK_CELLS)).zip(rest);
+            parallel::for_each(blocks, |(((places, values), given), rest)| {
+                let mut collected = [0.0; BLOCK_CELLS];
+                collect(finer, places, &mut collected);
+                let values = values.iter_mut().zip(given).zip(rest.iter().zip(collected));
+                for ((value, given), (rest, collected)) in values {
+                    let pressure = *value;
+                    *value += collected;
                     *given = rest * *value - pressure;
                 }
             });

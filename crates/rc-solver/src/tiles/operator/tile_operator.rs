@@ -245,13 +245,13 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
 
 impl<T: Real, B: Borrow<Tables<T>> + Sync> BlockOperator<T> for TileOperator<T, B> {
     fn layout(&self) -> BlockLayout {
-        self.hierarchy.mesh().layout()
+        self.hierarchy.layout().clone()
     }
 
     fn write(&mut self, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
         self.reserve();
         let own = &mut self.source[self.hierarchy.own_values()];
-        parallel::for_each(own.chunks_mut(BLOCK_CELLS).enumerate(), |(i, cells)| write(i, cells));
+        parallel::for_each(self.hierarchy.layout().chunks_mut(own).enumerate(), |(i, cells)| write(i, cells));
     }
 
     /// Applies the tables, except for the part of the elements' own level, which [`BlockOperator::read`] adds.
@@ -277,7 +277,7 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> BlockOperator<T> for TileOperator<T, 
             }
             self.add_ghosts(*coarser, tiles.clone(), cells);
             // Values that fill up the last block of a level have no displacement.
-            read(i, &block[..(n_own - i * BLOCK_CELLS).min(BLOCK_CELLS)]);
+            read(i, &block[..self.hierarchy.layout().range(i, n_own).len()]);
         });
     }
 
