@@ -246,7 +246,8 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     }
 
     fn into_solved(self, evaluation: Evaluation) -> (SolvedLevel, PressureScale) {
-        let Self { candidates: elements, current, info, work, .. } = self;
+        let Self { candidates: elements, known, current, info, work, .. } = self;
+        drop(known);
         let Evaluation { pressed, gap, outcome, scale, .. } = evaluation;
         let MeshStart { elements: pressing, pressure } = pressed.unwrap_or(current);
         let pressure = pressing.moved(&elements, &pressure, 0.0);

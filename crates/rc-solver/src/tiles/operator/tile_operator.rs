@@ -47,6 +47,16 @@ pub(crate) struct TileOperator<T, B> {
     tails: Vec<(TileRows, Vec<T>)>,
 }
 
+/// What another operator on the base grid and the elements may use and change between two applications.
+pub(crate) struct Buffers<'a, T> {
+    pub(crate) arch: Arch,
+    pub(crate) convolution: &'a mut Convolution<T>,
+    /// Room for values of the finest elements, including those of other ranks that this rank reads.
+    pub(crate) finest: &'a mut [T],
+    /// Room for two values of each cell of the levels below the finest. It may be made larger.
+    pub(crate) of_levels: [&'a mut [Vec<T>]; 2],
+}
+
 impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
     /// The operator with the `tables` of the levels of `hierarchy`.
     ///
@@ -88,10 +98,10 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
 
     /// Buffers that another operator on the base grid and the elements may use and change.
     ///
-    /// They are the vector instructions, the convolution, and room for a vector.
-    pub(crate) fn buffers(&mut self) -> (Arch, &mut Convolution<T>, &mut [T]) {
+    pub(crate) fn buffers(&mut self) -> Buffers<'_, T> {
         self.reserve();
-        (self.arch, &mut self.convolution, &mut self.source)
+        let Self { arch, convolution, source: finest, densities, displacements, .. } = self;
+        Buffers { arch: *arch, convolution, finest, of_levels: [densities, displacements] }
     }
 
     /// The base grid.
