@@ -226,11 +226,11 @@ impl<'a> TileLevels<'a> {
             return (elements, pressure);
         }
         match elements.thinned(|cells| pressure[cells].iter().any(|p| *p > 0.0 || p.is_nan())) {
-            Some(mesh) => {
+            Some(mesh) if !mesh.is_empty() => {
                 let pressure = elements.moved(&mesh, &pressure, 0.0);
                 (mesh, pressure)
             }
-            None => (elements, pressure),
+            _ => (elements, pressure),
         }
     }
 
