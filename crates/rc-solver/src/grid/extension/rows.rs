@@ -54,8 +54,9 @@ impl Parts {
         Self { active: parallel::zeros(n), weight }
     }
 
-    /// Sets the parts of squares that are active.
+    /// Sets the parts of squares that are active, which are the first of `parts`.
     pub(crate) fn set(&mut self, parts: &[f32]) {
+        let parts = &parts[..self.active.len()];
         parallel::for_each(self.active.chunks_mut(TASK).zip(parts.chunks(TASK)), |(own, parts)| {
             own.copy_from_slice(parts);
         });
