@@ -58,7 +58,7 @@ impl Evaluated<'_, '_> {
         let given = pressed.as_ref().unwrap_or(current);
         let (layout, mut gap) = (elements.layout(), vec![0.0; elements.n_own()]);
         write_blocks(&mut *operator, layout.ranges(gap.len()), |block, cells| {
-            set_pressure(elements, block, given, cells)
+            set_pressure(elements, block, given, cells);
         });
         operator.apply();
         let empty = GapSums::empty(f64::INFINITY, problem.bounds.hardness);
