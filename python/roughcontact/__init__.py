@@ -12,13 +12,14 @@ All quantities are in SI units. A cell of 1 and an E* of 1 give dimensionless re
 :func:`solve` solves one problem and :func:`sweep` many. :class:`Surface` is a random surface, and :func:`surface`
 returns its heights. :func:`read` reads a measured map, :func:`prepare` treats it, and :func:`inspect` describes it.
 :func:`study` tells how much its treatment matters.
-:func:`load` reads a result folder.
+:func:`load` reads a result folder. :mod:`roughcontact.torch` and :mod:`roughcontact.jax` differentiate contacts.
 
 Bad input raises a ``ValueError`` with the message that the command line prints. Unknown keywords and some wrong types
 raise a ``TypeError``. Numbers of equations are those of Putignano, Afferrante, Carbone, Demelio, *A new efficient numerical method
 for contact mechanics of rough surfaces*, Int. J. Solids Struct. 49 (2012).
 """
 
+from roughcontact import jax, torch
 from roughcontact._core import __version__
 from roughcontact._foreign import InputWarning
 from roughcontact._maps import HeightMap, channels, inspect, prepare, read
@@ -52,6 +53,7 @@ __all__ = [
     "__version__",
     "channels",
     "inspect",
+    "jax",
     "load",
     "prepare",
     "read",
@@ -59,4 +61,5 @@ __all__ = [
     "study",
     "surface",
     "sweep",
+    "torch",
 ]

@@ -507,7 +507,7 @@ class Result:
         Raises
         ------
         ValueError
-            Unless the contact is elastic, in a periodic cell, and solved with ``method="uniform"``.
+            Unless the contact is elastic, in a periodic cell, and on elements of one size.
         """
         return self._source.gradient(name, fixed)
 

@@ -24,7 +24,7 @@ def test_python_in_a_document_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     names: dict[str, object] = {}
     for kind, code in blocks(name):
-        if not kind or (kind == "torch" and importlib.util.find_spec(kind) is not None):
+        if not kind or (kind in ("jax", "torch") and importlib.util.find_spec(kind) is not None):
             exec(compile(code, name, "exec"), names)
 
 

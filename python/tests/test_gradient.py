@@ -51,6 +51,16 @@ def test_the_energy_is_a_function_of_the_pressure(map_of_heights):
     assert np.abs(result.gradient_of(np.ones_like(energy))).max() < 1e-6 * np.abs(result.gradient_of(result.pressure)).max()
 
 
+def test_the_adaptive_method_has_the_same_gradients():
+    surface = rc.Surface(waves=4, grid=256, seed=3, cell=1e-3)
+    keys = {"pressure": 1e6, "e_star": 1e9, "tolerance": 1e-8}
+    adaptive, uniform = (rc.solve(surface, method=method, **keys) for method in ("adaptive", "uniform"))
+    assert np.array_equal(adaptive.contact, uniform.contact)
+    for name in ("elastic_energy", "penetration", "mean_gap"):
+        expected = uniform.gradient(name)
+        assert adaptive.gradient(name) == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
+
+
 def test_what_has_no_gradient_says_why(map_of_heights):
     result = rc.solve(map_of_heights, pressure=1e6, **SCENE)
     with pytest.raises(ValueError, match="area_fraction has none, because the elements in contact are held fixed"):
@@ -63,9 +73,9 @@ def test_what_has_no_gradient_says_why(map_of_heights):
         result.gradient_of(np.ones(32))
     with pytest.raises(ValueError, match="read or unpickled"):
         pickle.loads(pickle.dumps(result)).gradient("mean_gap")
-    adaptive = rc.solve(map_of_heights, pressure=1e6, **{**SCENE, "method": "adaptive", "tolerance": 1e-4})
-    with pytest.raises(ValueError, match="the method adaptive cannot be combined with a gradient"):
-        adaptive.gradient("mean_gap")
+    divided = rc.solve(rc.Surface(waves=4, grid=64), pressure=1e6, border_level=1)
+    with pytest.raises(ValueError, match="a gradient cannot be combined with a border level"):
+        divided.gradient("mean_gap")
     hard = rc.solve(map_of_heights, pressure=1e6, hardness=2e8, **{**SCENE, "tolerance": 1e-6})
     with pytest.raises(ValueError, match="a gradient cannot be combined with a hardness"):
         hard.gradient("mean_gap")

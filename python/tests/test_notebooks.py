@@ -11,8 +11,8 @@ pytest.importorskip("ipykernel")
 NOTEBOOKS = sorted((pathlib.Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
 
 
-def test_there_are_five_notebooks_without_outputs():
-    assert len(NOTEBOOKS) == 5
+def test_there_are_six_notebooks_without_outputs():
+    assert len(NOTEBOOKS) == 6
     for path in NOTEBOOKS:
         for cell in nbformat.read(path, as_version=4).cells:
             assert cell.cell_type != "code" or (cell.outputs == [] and cell.execution_count is None), path.name

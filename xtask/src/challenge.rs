@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
-use rc_figures::challenge::{Large, Params, Source, archive_large};
-use rc_figures::{Challenge, run_one};
+use rc_figures::challenge::{Large, Params, Source};
+use rc_figures::{Challenge, repository, run_one};
 
 use crate::figures;
 
@@ -28,9 +28,7 @@ pub(crate) struct Args {
     /// 65536, as in the published reference, takes minutes and 9 GB.
     #[arg(long, value_name = "SIDE", num_args = 0..=1, default_missing_value = "65536", conflicts_with = "quick")]
     large: Option<usize>,
-    /// Archives this run: tables, picture and numbers of the document.
-    ///
-    /// They are in `data/runs/challenge/`, `docs/images/` and `docs/benchmarks.md`.
+    /// Archives this run: tables in `data/runs/challenge/`, and the picture in `docs/images/`.
     #[arg(long, conflicts_with_all = ["quick", "spectrum"])]
     archive: bool,
 }
@@ -44,11 +42,10 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         run_one::<Challenge>(preset, &params, out, args.archive)?;
         return Ok(());
     };
-    let large = Large::compute(&params, side)?;
-    let table = large.table();
+    let table = Large::compute(&params, side)?.table();
     println!("{}", table.aligned());
+    let out = if args.archive { &repository::root().join("data/runs/challenge") } else { out };
     std::fs::create_dir_all(out).with_context(|| format!("could not make {}", out.display()))?;
     let path = out.join("challenge-large.csv");
-    std::fs::write(&path, &table.csv).with_context(|| format!("could not write {}", path.display()))?;
-    if args.archive { archive_large(&large) } else { Ok(()) }
+    std::fs::write(&path, &table.csv).with_context(|| format!("could not write {}", path.display()))
 }

@@ -26,7 +26,7 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
         println!("{}", book.join("index.html").display());
     } else {
         println!(
-            "no book, there is no mdbook here (cargo install mdbook --locked); docs/introduction.md begins the guide"
+            "no book, there is no mdbook here (cargo install mdbook --locked); docs/getting-started.md begins the guide"
         );
     }
     let writer = PDF_WRITERS.into_iter().find(|writer| path_of(writer).is_some());

@@ -55,7 +55,7 @@ pub(crate) fn run_all(args: &AllArgs) -> Result<()> {
     all::run(args.figures.preset(), &args.figures.out, archive)
 }
 
-/// Rewrites the numbers of docs/reproduction.md and docs/benchmarks.md from the archived runs of figures
+/// Rewrites the numbers of docs/reproduction.md from the archived runs of figures
 ///
 /// Every `--archive` of a figure does this too.
 #[derive(clap::Args)]

@@ -12,9 +12,7 @@ use crate::figures;
 pub(crate) struct Args {
     #[command(flatten)]
     figure: figures::Args,
-    /// Archives this run: tables, picture and numbers of the document.
-    ///
-    /// They are in `data/runs/gfmd/`, `docs/images/` and `docs/benchmarks.md`.
+    /// Archives this run: tables in `data/runs/gfmd/`, and the picture in `docs/images/`.
     #[arg(long, conflicts_with = "quick")]
     archive: bool,
 }

@@ -14,7 +14,7 @@ use crate::figures;
 pub(crate) struct Args {
     #[command(flatten)]
     figure: figures::Args,
-    /// Only groups whose name contains this: extremes, meshes, invariances or sliding.
+    /// Only groups whose name contains this: extremes, meshes or sliding.
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
 }

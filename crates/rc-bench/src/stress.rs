@@ -3,7 +3,6 @@
 mod audit;
 mod extremes;
 mod heights;
-mod invariances;
 mod meshes;
 mod row;
 mod scene;
@@ -22,12 +21,8 @@ use row::{Row, Rows, guarded};
 /// Makes the lines of one or more groups.
 type MakeRows = fn(Preset) -> Result<Vec<Row>>;
 
-const GROUPS: [(&str, MakeRows); 4] = [
-    ("extremes", extremes::rows),
-    ("meshes", meshes::rows),
-    ("invariances", invariances::rows),
-    ("sliding", sliding::rows),
-];
+const GROUPS: [(&str, MakeRows); 3] =
+    [("extremes", extremes::rows), ("meshes", meshes::rows), ("sliding", sliding::rows)];
 
 /// Runs the scenes, writes the table into `folder`, and prints a line for each group.
 ///
@@ -114,7 +109,7 @@ mod tests {
     #[test]
     fn an_unknown_group_is_refused() {
         let error = run(Preset::Quick, Some("mesh-free"), Path::new("nowhere")).expect_err("no such group").to_string();
-        assert!(error.contains("'mesh-free'") && error.contains("extremes, meshes, invariances, sliding"), "{error}");
+        assert!(error.contains("'mesh-free'") && error.contains("extremes, meshes, sliding"), "{error}");
     }
 
     #[test]

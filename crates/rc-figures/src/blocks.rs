@@ -1,8 +1,7 @@
 //! Pages with blocks of numbers that a program writes.
 //!
 //! People write the text. A block is between `<!-- numbers: name -->` and `<!-- end of numbers -->`. Blocks of archived
-//! figures (`shown.rs`) may stand on every page. `cargo xtask reproduction` and every `--archive` write them, and
-//! `cargo xtask tidy` compares them.
+//! figures (`shown.rs`) are written by `cargo xtask reproduction` and every `--archive`. `cargo xtask tidy` compares them.
 
 use std::fs;
 
@@ -16,58 +15,41 @@ pub const BEGIN: &str = "<!-- numbers: ";
 /// End of a block.
 pub const END: &str = "<!-- end of numbers -->";
 
-/// The pages with blocks of archived figures. Other programs write the other blocks of the second one.
-const PAGES: [&str; 2] = ["docs/reproduction.md", "docs/benchmarks.md"];
+/// The page with blocks of archived figures.
+const PAGE: &str = "docs/reproduction.md";
 
 /// Rewrites the numbers of the archived figures.
 ///
 /// # Errors
-/// When a number is missing in an archived run, or a page cannot be written.
+/// When a number is missing in an archived run, or the page cannot be written.
 pub fn update() -> Result<()> {
-    rewrite(PAGES, render)
+    rewrite([PAGE], |_, sources| render(sources))
 }
 
-/// Complaints about pages whose numbers differ from the archived figures.
+/// A complaint if the page has other numbers than the archived figures.
 #[must_use]
 pub fn check(sources: &Sources) -> Vec<String> {
     let cure = "data/runs/; run `cargo xtask reproduction`, and review what changed";
-    PAGES.into_iter().filter_map(|page| complaint(page, sources, render(page, sources), cure)).collect()
+    complaint(PAGE, sources, render(sources), cure).into_iter().collect()
 }
 
-/// A page of [`PAGES`] with the numbers of the archived figures.
-fn render(page: &str, sources: &Sources) -> Result<String, String> {
-    filled(page, sources, |name| match page {
-        "docs/reproduction.md" => {
-            Err(format!("{page}: no numbers are called `{name}`; add a table in crates/rc-figures/src/shown.rs"))
-        }
-        _ => Ok(None),
-    })
+fn render(sources: &Sources) -> Result<String, String> {
+    fill(PAGE, sources, |name| shown::block(name, sources))
 }
 
-/// The page at `path` with its blocks filled: those of archived figures, and all others by `block` from their names.
+/// The page at `path` with its blocks filled by `block` from their names.
 ///
 /// # Errors
 /// When the page or a marker is missing, and the errors of `block`.
 pub fn fill(path: &str, sources: &Sources, block: impl Fn(&str) -> Result<String, String>) -> Result<String, String> {
-    filled(path, sources, |name| block(name).map(Some))
-}
-
-/// As [`fill`]. A block stays as it is if `block` returns `None`.
-fn filled(
-    path: &str,
-    sources: &Sources,
-    block: impl Fn(&str) -> Result<Option<String>, String>,
-) -> Result<String, String> {
     let page = sources.get(path).ok_or_else(|| format!("{path} is missing; restore it from history"))?;
     let mut text = String::new();
     let mut rest = page.as_str();
     while let Some((before, after)) = rest.split_once(BEGIN) {
         let (name, after) =
             after.split_once(" -->").ok_or_else(|| format!("{path}: `{BEGIN}` without ` -->`; close it"))?;
-        let (old, after) = after.split_once(END).ok_or_else(|| format!("{path}: no `{END}` after {name}; add it"))?;
-        let new = shown::block(name, sources).map_or_else(|| block(name), |text| text.map(Some))?;
-        let inside = new.map_or_else(|| old.to_owned(), |text| format!("\n\n{text}\n"));
-        text.extend([before, BEGIN, name, " -->", &inside, END]);
+        let (_, after) = after.split_once(END).ok_or_else(|| format!("{path}: no `{END}` after {name}; add it"))?;
+        text.extend([before, BEGIN, name, " -->\n\n", &block(name)?, "\n", END]);
         rest = after;
     }
     Ok(text + rest)
@@ -108,22 +90,20 @@ pub fn complaint(path: &str, sources: &Sources, rendered: Result<String, String>
 mod tests {
     use super::*;
 
-    /// Complaints about these two pages, and the rendered pages.
-    fn checked(pages: [&str; 2]) -> (Vec<String>, [Result<String, String>; 2]) {
-        let mut sources: Sources =
-            PAGES.into_iter().zip(pages).map(|(path, text)| (path.into(), text.into())).collect();
-        sources.insert("data/runs/gfmd/run.toml".to_owned(), "seconds = 5.0\n".to_owned());
-        (check(&sources), PAGES.map(|page| render(page, &sources)))
+    /// Complaints about this page, and the rendered page.
+    fn checked(page: &str) -> (Vec<String>, Result<String, String>) {
+        let files = [(PAGE, page), ("data/runs/gfmd/run.toml", "seconds = 5.0\n")];
+        let sources = files.map(|(path, text)| (path.to_owned(), text.to_owned())).into();
+        (check(&sources), render(&sources))
     }
 
     #[test]
-    fn figures_may_stand_beside_blocks_of_other_programs() {
-        let page = format!("before\n{BEGIN}gfmd-run -->stale{END}\n{BEGIN}bench-times -->theirs{END}\n");
-        let (complaints, [_, rendered]) = checked(["no numbers", &page]);
+    fn numbers_of_a_page_are_those_of_the_archive() {
+        let (complaints, rendered) = checked(&format!("before\n{BEGIN}gfmd-run -->stale{END}\nafter\n"));
         let text = rendered.expect("the run is there");
         assert!(complaints.len() == 1 && complaints[0].contains("cargo xtask reproduction"), "{complaints:?}");
-        assert!(text.contains("5.0 s on") && text.contains("theirs") && !text.contains("stale"), "{text}");
-        assert_eq!(checked(["no numbers", &text]).0, Vec::<String>::new());
+        assert!(text.contains("5.0 s on") && text.contains("after") && !text.contains("stale"), "{text}");
+        assert_eq!(checked(&text).0, Vec::<String>::new());
     }
 
     #[test]
@@ -133,7 +113,7 @@ mod tests {
             (format!("{BEGIN}fig6 -->"), END),
             (format!("{BEGIN}paper-run -->{END}"), "run.toml"),
         ] {
-            let (complaints, _) = checked([&block, "no numbers"]);
+            let (complaints, _) = checked(&block);
             assert!(complaints.len() == 1 && complaints[0].contains(named), "{complaints:?}");
         }
     }

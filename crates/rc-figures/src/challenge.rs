@@ -25,7 +25,7 @@ use rc_solver::{ContactArea, ContactSpot, Control, Observables, Solution, SolveP
 use crate::chart::draw_panels;
 use crate::{Figure, Preset, Table};
 
-pub use large::{Large, archive_large};
+pub use large::Large;
 
 /// Side of the cell (µm); E* (MPa) follows.
 const CELL_UM: f64 = 100.0;

@@ -7,11 +7,11 @@ use rc_figures::repository::Sources;
 use super::record::{Row, from_csv};
 use super::reference::{REFERENCE, References};
 use super::scale::ScaleRow;
-use super::tables::{contact, equal_meshes, grids, machine, sentence, spreads, times};
+use super::tables::{equal_meshes, grids, machine, sentence, spreads, times};
 use super::times::Results;
 
 /// The documents that have blocks of the benchmark.
-const DOCUMENTS: [&str; 4] = ["README.md", "docs/benchmarks.md", "docs/faq.md", "docs/adaptive-mesh.md"];
+const DOCUMENTS: [&str; 3] = ["README.md", "docs/benchmarks.md", "docs/faq.md"];
 /// The lines of the archived run.
 pub(super) const BENCH: &str = "data/bench/bench.csv";
 /// Description of the machine of the archived run.
@@ -21,8 +21,8 @@ pub(super) const SCALE: &str = "data/bench/scale.csv";
 pub(super) const SCALE_MACHINE: &str = "data/bench/scale.toml";
 
 /// The names of the blocks.
-const BLOCKS: [&str; 7] =
-    ["bench-times", "bench-equal", "bench-machine", "scale-grids", "scale-contact", "scale-sentence", "scale-machine"];
+const BLOCKS: [&str; 6] =
+    ["bench-times", "bench-equal", "bench-machine", "scale-grids", "scale-sentence", "scale-machine"];
 
 /// Rewrites the tables in the documents.
 ///
@@ -60,7 +60,6 @@ fn block(name: &str, sources: &Sources) -> Result<String> {
         "bench-equal" => equal_meshes(&results),
         "bench-machine" => machine(&source(MACHINE)?.parse()?) + "\n" + &spreads(&results),
         "scale-grids" => grids(&scale),
-        "scale-contact" => contact(&scale),
         "scale-sentence" => sentence(&scale).unwrap_or_default(),
         "scale-machine" => machine(&source(SCALE_MACHINE)?.parse()?),
         _ => bail!("no numbers are called `{name}`; there are {}", BLOCKS.join(", ")),

@@ -61,36 +61,16 @@ pub(crate) struct Solved {
     pub(crate) stiffness: f64,
 }
 
-impl Solved {
-    /// Relative rms difference of two pressures.
-    pub(crate) fn distance(&self, other: &Field) -> f64 {
-        let squares = self.pressure.values().iter().zip(other.values()).map(|(a, b)| (a - b) * (a - b));
-        (squares.sum::<f64>() / other.values().iter().map(|b| b * b).sum::<f64>()).sqrt()
-    }
-}
-
 /// Solves to the tolerance `tolerance`, relative to the height range.
 pub(crate) fn solve(heights: &Field, method: Method, control: Control, tolerance: f64) -> Result<Solved> {
-    solve_problem(ContactProblem::new(heights, control), method, tolerance)
-        .with_context(|| format!("{} {control:?} to {tolerance:e}", method.name()))
-}
-
-/// Solves with a hardness.
-pub(crate) fn solve_hard(
-    heights: &Field,
-    method: Method,
-    (control, hardness): (Control, f64),
-    tolerance: f64,
-) -> Result<Solved> {
-    solve_problem(ContactProblem::new(heights, control).with_hardness(hardness), method, tolerance)
-}
-
-fn solve_problem(problem: ContactProblem<'_>, method: Method, tolerance: f64) -> Result<Solved> {
     let params = SolveParams {
         gauss_seidel: GaussSeidelParams { uniform_elements: true, ..GaussSeidelParams::paper() },
         ..SolveParams::to_tolerance(tolerance).by(method.of_solver())
     };
-    let solution = problem.with_kernel(method.kernel()).solve(&params, &Silent)?;
+    let solution = ContactProblem::new(heights, control)
+        .with_kernel(method.kernel())
+        .solve(&params, &Silent)
+        .with_context(|| format!("{} {control:?} to {tolerance:e}", method.name()))?;
     Ok(Solved {
         pressure: solution.pressure().clone(),
         info: solution.info().clone(),

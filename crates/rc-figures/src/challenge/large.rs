@@ -1,17 +1,12 @@
 //! One load on the grid of the published reference.
 
-use std::fs;
-
-use anyhow::{Context, Result};
+use anyhow::Result;
 use rc_sweep::memory;
 
 use super::tables::solved;
 use super::{Params, REFERENCE_LOAD, Solved, Source, press};
+use crate::Table;
 use crate::table::Rows;
-use crate::{Table, blocks, repository};
-
-/// File of the archived run.
-const FILE: &str = "data/runs/challenge/challenge-large.csv";
 
 /// The contact under [`REFERENCE_LOAD`] on a grid of the reference's size.
 #[derive(Clone, Debug)]
@@ -23,9 +18,6 @@ pub struct Large {
 }
 
 impl Large {
-    /// Elements along a side of the published reference.
-    pub const REFERENCE_SIDE: usize = 65_536;
-
     /// Solves the contact on a grid of `side` elements per side.
     ///
     /// At 65536² this takes about 9 GB. No field is ever stored as a whole.
@@ -53,19 +45,6 @@ impl Large {
             .column("peak_memory_megabytes", |_| self.megabytes)
             .table("large")
     }
-}
-
-/// Archives `large`: its line in `data/runs/challenge/`, and its numbers in the document.
-///
-/// # Errors
-/// When a file cannot be written.
-pub fn archive_large(large: &Large) -> Result<()> {
-    let path = repository::root().join(FILE);
-    if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).with_context(|| format!("could not make {}", folder.display()))?;
-    }
-    fs::write(&path, large.table().csv).with_context(|| format!("could not write {}", path.display()))?;
-    blocks::update()
 }
 
 #[cfg(test)]

@@ -106,7 +106,6 @@ const NO_TAILS: Not =
     Some("it needs a series of relaxation times, a velocity along x, and a grid that can be halved several times");
 const SYMMETRIC: Not = Some("its procedure needs a symmetric operator");
 const NORMAL: Not = Some("its coefficients are those of normal pressures");
-const OF_GRID: Not = Some("its linear system is solved on a uniform grid");
 const DIVIDED: Not = Some("only the adaptive method runs on several ranks");
 
 const TANGENTIAL: &str = "its response to tangential tractions is not known";
@@ -143,14 +142,14 @@ const ROWS: [Row; 29] = [
     (Sliding, "speed", "a sliding surface", [None, None, SYMMETRIC]),
     (LagOnGrid, "speed", "a lag that only whole grids have", [NO_TAILS, None, SYMMETRIC]),
     (Shear, "friction", "friction with partial slip", [None, None, NORMAL]),
-    (Gradient, "gradient", "a gradient", [OF_GRID, None, OF_GRID]),
+    (Gradient, "gradient", "a gradient", [None, None, Some("its elements are of several sizes")]),
     (Sweep, "sweep", "a sweep", ALL),
     (Watch, "watch", "a picture while it is solved", ALL),
     (DryRun, "dry_run", "a dry run", ALL),
 ];
 
 /// Features that exclude each other with every method. The message names the key of the first.
-const PAIRS: [(Feature, Feature, &str); 51] = [
+const PAIRS: [(Feature, Feature, &str); 53] = [
     (Spectral, FreeBorders, "its waves are periodic"),
     (FreeBorders, KernelFunction, "the function describes a periodic cell"),
     (FreeBorders, Layer, "the response of a layer is known in a periodic cell only"),
@@ -196,6 +195,8 @@ const PAIRS: [(Feature, Feature, &str); 51] = [
     (Gradient, Hardness, "plastic elements are not in its linear system"),
     (Gradient, Sliding, "its linear system must be symmetric"),
     (Gradient, Shear, "derivatives of tractions are not known"),
+    (Gradient, BorderLevel, "derivatives are with respect to elements of one size"),
+    (Gradient, Ranks, "its linear system is not divided among ranks"),
     (Watch, DryRun, "a dry run has no contact to show"),
     (Watch, Ranks, "no rank has the whole contact while it is solved"),
     (Leakage, Ranks, "the flow is not solved over ranks"),

@@ -9,13 +9,16 @@ use rc_core::{DVec2, Field, Grid};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, put_tile};
 
 use crate::descent::contact_element::ContactElement;
+use crate::descent::contact_system::solve_on_contact;
 use crate::descent::info::{SolveInfo, Status};
-use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
+use crate::descent::operators::{BlockOperator, LevelOperators, read_blocks, write_blocks};
 use crate::descent::stiffness::{elastic_part, least_rise, stiffness_by_gmres, stiffness_pressure, stiffness_under};
 use crate::parallel;
+use crate::problem::capabilities::Feature;
 use crate::solution::contact_area::area::ContactArea;
 use crate::solution::contact_area::plastic::PlasticEdges;
 use crate::solution::gap_part::GapPart;
+use crate::solution::gradient_error::GradientError;
 use crate::solution::observables::Observables;
 use crate::solution::rows::{Halted, Receiver, Rows, TakeRows};
 use crate::solution::solved::{Counts, Solved};
@@ -26,10 +29,11 @@ use crate::tiles::kernels::Kernels;
 use crate::tiles::ladder::sides_of;
 use crate::tiles::mesh::Mesh;
 use crate::tiles::operator::corrections::TileCorrections;
-use crate::tiles::operator::hierarchy::Hierarchy;
+use crate::tiles::operator::hierarchy::{Hierarchy, Reach};
 use crate::tiles::operator::tables::{Prepared, Tables};
 use crate::tiles::operator::tile_operator::TileOperator;
 use crate::tiles::scaled_operator::ScaledOperator;
+use crate::tiles::split::GapSplit;
 
 /// A solved finest level on tiles, with the heights and kernels that later questions need.
 ///
@@ -142,10 +146,27 @@ impl TileSolution<'_> {
         stiffness_under(&x, n, &mut TileOperator::new(hierarchy, &tables))
     }
 
+    /// `map` gets the value of each element and that of the same element of the grid. Elements are of one size.
+    fn exchange(&self, values: &mut [f64], on_grid: &mut [f64], map: impl Fn(&mut f64, &mut f64)) {
+        let tiles = self.mesh.finest();
+        let [nx, ny] = tiles.sides();
+        for (place, values) in tiles.places().iter().zip(values.chunks_mut(CELLS)) {
+            let [column, row] = place.map(|i| i as usize * TILE);
+            for (y, values) in values.chunks_mut(TILE).enumerate().take(ny - row) {
+                let width = TILE.min(nx - column);
+                let on_grid = &mut on_grid[(row + y) * nx + column..][..width];
+                values.iter_mut().zip(on_grid).for_each(|(value, on_grid)| map(value, on_grid));
+            }
+        }
+    }
+
     /// The hierarchy and tables of L by this kernel on the mesh.
     fn operator_of(&self, prepared: &Prepared<f32>) -> (Arc<Hierarchy>, Tables<f32>) {
-        let hierarchy = Hierarchy::new(self.base(), self.mesh.clone(), prepared.reach());
-        (Arc::new(hierarchy), prepared.tables(self.finest))
+        (self.hierarchy(&self.mesh, prepared.reach()), prepared.tables(self.finest))
+    }
+
+    fn hierarchy(&self, mesh: &Mesh, reach: Reach) -> Arc<Hierarchy> {
+        Arc::new(Hierarchy::new(self.base(), mesh.clone(), reach))
     }
 }
 
@@ -221,6 +242,51 @@ impl Solved for TileSolution<'_> {
         let half_space = self.data.half_space.as_ref();
         let is_stiffness = half_space.is_none() && self.is_elastic();
         (!is_stiffness).then(|| self.stiffness_of(half_space.unwrap_or(&self.data.kernels), &self.pressure, true))
+    }
+
+    fn features(&self) -> Vec<Feature> {
+        [
+            (self.data.kernels.is_sliding(), Feature::Sliding),
+            (self.base().is_free(), Feature::FreeBorders),
+            (self.finest != self.grid, Feature::BorderLevel),
+            (self.mesh.ranks().size() > 1, Feature::Ranks),
+        ]
+        .into_iter()
+        .filter_map(|(has, feature)| has.then_some(feature))
+        .collect()
+    }
+
+    /// Heights are evaluated again.
+    fn highest(&self) -> Option<usize> {
+        let sides @ [nx, ny] = sides_of(self.grid);
+        let rows = (0..ny.div_ceil(TILE)).filter_map(|row| {
+            let rows = self.data.heights.row_of_tiles(sides, row);
+            let highest = (0..rows.len()).reduce(|one, i| if rows[i] > rows[one] { i } else { one })?;
+            Some((row * TILE * nx + highest, rows[highest]))
+        });
+        rows.reduce(|one, other| if other.1 > one.1 { other } else { one }).map(|(index, _)| index)
+    }
+
+    /// L is that of the most accurate split.
+    fn displaced_by(&self, displacement: &[f64], is_balanced: bool) -> Result<Vec<f64>, GradientError> {
+        let (kernels, mut on_grid) = (&self.data.kernels, displacement.to_vec());
+        let mut wanted = vec![0.0; self.pressure.len()];
+        self.exchange(&mut wanted, &mut on_grid, |wanted, given| *wanted = *given);
+        let mut preconditioner = kernels.preconditioner().tables(self.finest);
+        let (quick, prepared) = (kernels.quick(), kernels.gap(GapSplit::most_accurate()));
+        // GMRES works on whole blocks.
+        let mesh = Mesh::new(self.mesh.elements().clone(), self.mesh.ranks());
+        let (hierarchy, tables) = (self.hierarchy(&mesh, quick.reach()), quick.tables(self.finest));
+        let fresh = prepared.tables(self.finest);
+        let mut operators = LevelOperators {
+            corrections: Box::new(TileCorrections::new(hierarchy, &tables, &mut preconditioner)),
+            fresh: fresh.operator(self.hierarchy(&mesh, prepared.reach()), 0.0, 1.0),
+        };
+        let mut found =
+            solve_on_contact(&self.pressure, &wanted, is_balanced, &mut operators).map_err(GradientError::Inexact)?;
+        on_grid.fill(0.0);
+        self.exchange(&mut found, &mut on_grid, |found, on_grid| *on_grid = *found);
+        Ok(on_grid)
     }
 
     fn stored(&self) -> Option<[&Field; 2]> {

@@ -190,6 +190,43 @@ fn in_full_contact_the_load_is_held_fixed_or_a_base_supports_it() {
 }
 
 #[test]
+fn gradients_on_tiles_are_those_on_a_grid() {
+    let in_cell = |nx: usize, ny: usize| {
+        let grid = Grid::in_cell(nx, ny, ny as f64 / nx as f64).expect("a grid");
+        Field::new(grid, bumps(nx, ny).values().to_vec()).expect("a value for each element")
+    };
+    let (square, oblong, odd) = (in_cell(256, 256), in_cell(256, 128), in_cell(250, 230));
+    let layer = LoveLayer(Layer::on_rigid_base(0.2, 0.3));
+    let problems: [(&Field, &dyn Kernel); 4] = [(&square, &Love), (&oblong, &Love), (&odd, &Love), (&square, &layer)];
+    for (heights, kernel) in problems {
+        let solve = |control, method| {
+            let params = SolveParams::to_tolerance(1e-9).by(method);
+            ContactProblem::new(heights, control).with_kernel(kernel).solve(&params, &Silent).expect("a contact")
+        };
+        let deep = Control::Penetration(solve(Control::MeanPressure(LOAD), Method::Uniform).info().penetration);
+        for (control, given) in [(Control::MeanPressure(LOAD), Quantity::MeanPressure), (deep, Quantity::Penetration)] {
+            let both = [Method::Adaptive, Method::Uniform].map(|method| solve(control, method));
+            assert_eq!(both[0].method(), Method::Adaptive);
+            assert_eq!(contact(both[0].pressure()), contact(both[1].pressure()), "{} {control:?}", kernel.name());
+            let squares = both.each_ref().map(|solution| {
+                let derivatives: Vec<f64> = solution.pressure().values().iter().map(|p| 2.0 * p).collect();
+                solution.gradient_of(&derivatives, None).expect("a gradient")
+            });
+            let quantities =
+                [Quantity::ElasticEnergy, Quantity::MeanPressure, Quantity::Penetration, Quantity::MeanGap];
+            let named = quantities.into_iter().filter(|quantity| *quantity != given);
+            let pairs = named.map(|name| both.each_ref().map(|it| it.gradient(name, None).expect("a gradient")));
+            for [tiles, grid] in pairs.chain([squares]) {
+                let apart = tiles.values().iter().zip(grid.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                // The pressures differ by their tolerance, and the split by 6e-9 of a displacement.
+                let error = apart / largest(&grid);
+                assert!(error < 1e-6, "{} {control:?}: {error:.1e}", kernel.name());
+            }
+        }
+    }
+}
+
+#[test]
 fn what_has_no_gradient_is_refused() {
     let heights = bumps(64, 64);
     let rubber = Relaxation::single(10.0, 0.1).expect("a material");
@@ -204,7 +241,7 @@ fn what_has_no_gradient_is_refused() {
         ("free", problem().with_kernel(&FreeLove), Method::Uniform, "a gradient cannot be combined with free borders"),
         ("hard", problem().with_hardness(0.05), Method::Uniform, "a gradient cannot be combined with a hardness"),
         ("sliding", problem().with_kernel(&sliding), Method::Uniform, "cannot be combined with a sliding surface"),
-        ("adaptive", problem(), Method::Adaptive, "adaptive cannot be combined with a gradient"),
+        ("paper", problem(), Method::GaussSeidel, "gauss-seidel cannot be combined with a gradient"),
     ];
     for (name, problem, method, wanted) in cases {
         let told = solved(name, problem, method);

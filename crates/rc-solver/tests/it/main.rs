@@ -12,6 +12,7 @@ mod history;
 mod observers;
 mod operators;
 mod over_ranks;
+mod properties;
 mod shear;
 mod sliding;
 mod split;
