@@ -103,6 +103,17 @@ def as_heights(heights: Any) -> Floats:
     return array
 
 
+def as_field(name: str, values: Any) -> Floats:
+    """Values of elements as an array of float64, row by row."""
+    try:
+        array = np.require(np.asarray(values), np.float64, ["C", "A"])
+    except (TypeError, ValueError) as cause:
+        raise ValueError(f"{name}: must be a 2-D array of numbers, shape (ny, nx): {cause}") from None
+    if array.ndim != 2:
+        raise ValueError(f"{name}: must be a 2-D array, one value for each element, not of shape {array.shape}")
+    return array
+
+
 def as_profile(heights: Any) -> Floats:
     """The heights of a profile as an array of one row."""
     array = heights.heights if isinstance(heights, HeightMap) else np.asarray(heights)

@@ -210,7 +210,7 @@ class Result:
 
     @cached_property
     def pressure(self) -> Floats:
-        """Pressure (Pa), shape (ny, nx), ≥ 0, read-only."""
+        """Pressure (Pa), shape (ny, nx), ≥ 0, read-only. That of a fluid is not in it: :attr:`fluid_pressure`."""
         return _locked(self._source.pressure())
 
     @cached_property
@@ -229,6 +229,22 @@ class Result:
         """Heights of the unloaded surface after ``history`` (m), shape (ny, nx), read-only. None without it, and if it did not converge."""
         field = self._source.residual()
         return None if field is None else _locked(field)
+
+    @cached_property
+    def fluid_pressure(self) -> Floats | None:
+        """Pressure of the fluid (Pa) that was given, shape (ny, nx), read-only. None without one. It adds to :attr:`pressure`."""
+        field = self._source.fluid_pressure()
+        return None if field is None else _locked(field)
+
+    @property
+    def mean_fluid_pressure(self) -> float | None:
+        """Mean pressure of the fluid (Pa). None without ``fluid_pressure``."""
+        return self.summary.get("mean_fluid_pressure")
+
+    @property
+    def mean_contact_pressure(self) -> float | None:
+        """Mean of :attr:`pressure`, which the contact bears beside the fluid (Pa). None without ``fluid_pressure``."""
+        return self.summary.get("mean_contact_pressure")
 
     @property
     def force(self) -> float | None:
@@ -264,6 +280,11 @@ class Result:
     def residual_rms_height(self) -> float | None:
         """Rms height of :attr:`residual` (m). None without ``history``."""
         return self.summary.get("residual_rms_height")
+
+    @property
+    def path_difference(self) -> dict[str, float] | None:
+        """Relative changes by ``history_steps``: ``area_fraction``, ``removed_volume``, ``residual_rms_height``. None without it."""
+        return self.summary.get("path_difference")
 
     @property
     def friction(self) -> float | None:
@@ -347,6 +368,11 @@ class Result:
     def shear_rounds(self) -> int | None:
         """Rounds that corrected the tractions. None without a shear."""
         return self.summary.get("shear_rounds")
+
+    @property
+    def shear_note(self) -> str | None:
+        """What the shear neglects. None if nothing, and without ``friction``."""
+        return self.summary.get("shear_note")
 
     @cached_property
     def _shear(self) -> tuple[Floats, ...] | None:

@@ -29,7 +29,7 @@ from roughcontact._keys import (
     Shape,
     plain,
 )
-from roughcontact._maps import Heights, as_heights, as_profile, map_parts
+from roughcontact._maps import Heights, as_field, as_heights, as_profile, map_parts
 from roughcontact._result import Result, told
 from roughcontact._run import Bar, Interrupted, NotConvergedError, NotConvergedWarning, ProgressOption, callback, checked
 from roughcontact._surface import Surface
@@ -87,6 +87,8 @@ def solve(
     force: Quantity | None = None,
     hardness: Quantity | None = None,
     history: History | None = None,
+    history_steps: int | None = None,
+    fluid_pressure: Path | NDArray[np.float64] | None = None,
     speed: Quantity | None = None,
     direction: Quantity | None = None,
     prony: Prony | None = None,
@@ -166,6 +168,11 @@ def solve(
         Mean pressures (Pa) one after the other, such as ``[1e7, 0]``, instead of ``pressure`` and with ``hardness``. Each
         finds the surface that plastic flow under those before it has left. The result is that of the last one above 0, and
         :attr:`Result.residual` is the unloaded surface after the last.
+    history_steps : int, optional
+        Reach each higher load of ``history`` in this many equal steps, for :attr:`Result.path_difference`.
+    fluid_pressure : array or path, optional
+        Pressure of a fluid (Pa), one value for each element, which the pressure is nowhere below. The load is that of both.
+        The pressures of the result are those that the contact bears beside it.
     speed, direction : float or str, optional
         Speed (m/s) of the surface that slides steadily over a solid that relaxes, and its direction: 0 degrees, the default,
         is along +x, 90 along +y. The moduli are the relaxed ones. Adds :attr:`Result.friction`.
@@ -258,9 +265,12 @@ def solve(
     keys = plain({name: value for name, value in given.items() if name not in _OPTIONS})
     if strict:
         keys["strict"] = True
+    fluid = None
+    if not isinstance(keys.get("fluid_pressure", ""), str):
+        fluid = as_field("fluid_pressure", keys.pop("fluid_pressure"))
     problem = surface_of(heights, keys)
     tell(problem.doubts, strict)
-    result = solve_keys(problem, scene=scene, kernel=kernel, progress=progress)
+    result = solve_keys(problem, scene=scene, fluid=fluid, kernel=kernel, progress=progress)
     _tell_of(result, strict)
     if result.failure is not None:
         if check:
@@ -292,6 +302,7 @@ def solve_keys(
     problem: Problem,
     *,
     scene: Path | None = None,
+    fluid: NDArray[np.float64] | None = None,
     kernel: Kernel | None = None,
     progress: ProgressOption = False,
     is_row: bool = False,
@@ -308,6 +319,7 @@ def solve_keys(
     given: _core.Given = {
         "heights": array,
         "sides": sides,
+        "fluid": fluid,
         "scene": None if scene is None else os.fspath(scene),
         "kernel": symbol,
         "progress": None if function is None else callback(function),

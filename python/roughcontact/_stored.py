@@ -35,6 +35,7 @@ class Source(Protocol):
     def finest_gap(self) -> Floats | None: ...
     def plastic_gap(self) -> Floats | None: ...
     def residual(self) -> Floats | None: ...
+    def fluid_pressure(self) -> Floats | None: ...
     def shear(self) -> list[Floats] | None: ...
     def flux(self) -> list[Floats] | None: ...
     def elements(self) -> list[Floats] | None: ...
@@ -76,6 +77,9 @@ class Stored:
 
     def residual(self) -> Floats | None:
         return self._array("residual") if "residual.npy" in self.files else None
+
+    def fluid_pressure(self) -> Floats | None:
+        return self._array("fluid_pressure") if "fluid_pressure.npy" in self.files else None
 
     def shear(self) -> list[Floats] | None:
         if "shear" in self.fields:
@@ -138,7 +142,7 @@ def files_in(folder: str) -> dict[str, bytes]:
 
 #: Files of a result folder; the others there belong to somebody else.
 FILES = (
-    *("summary.json", "scene.toml", "pressure.npy", "gap.npy", "plastic_gap.npy", "residual.npy"),
+    *("summary.json", "scene.toml", "pressure.npy", "gap.npy", "plastic_gap.npy", "residual.npy", "fluid_pressure.npy"),
     *("contact.png", "elements.csv", "heights.npy", "leakage.png"),
     *FLUX_FILES,
     *SHEAR_FILES,

@@ -31,7 +31,7 @@ def test_sweep_and_surface_have_the_keywords_of_solve():
     of = lambda function: inspect.signature(function).parameters  # noqa: E731
     solve, sweep = of(rc.solve), of(rc.sweep)
     own = {"pressures", "penetrations", "speeds", "times", "seeds", "vary", "executor", "keep_results", "out", "resume", "fields"}
-    one = {"pressure", "penetration", "seed", "area_error", "history", "output_grid", "precision", "elements", "friction", "shear_pressure", "shear_displacement", "shear_angle", "uncoupled", "unit", "height_unit", "height_scale", "channel", "layout"}
+    one = {"pressure", "penetration", "seed", "area_error", "history", "history_steps", "fluid_pressure", "output_grid", "precision", "elements", "friction", "shear_pressure", "shear_displacement", "shear_angle", "uncoupled", "unit", "height_unit", "height_scale", "channel", "layout"}
     assert set(sweep) - own == set(solve) - one
     for name in set(sweep) - own:
         assert sweep[name].annotation == solve[name].annotation, name

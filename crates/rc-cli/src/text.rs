@@ -3,16 +3,18 @@
 use std::path::Path;
 
 use rc_core::quantity::{Scale, count, digits, engineering};
-use rc_sweep::{ControlKind, FrictionSummary, LeakageSummary, ShearSummary, Summary};
+use rc_sweep::{ControlKind, FrictionSummary, LeakageSummary, PathDifference, ShearSummary, Summary};
 
+use crate::scene::keys::ContactKeys;
+use crate::scene::resolve::{elastic_layer, sliding};
 use crate::study::record::words_with_error;
 
 /// A few aligned lines about a solved problem.
 ///
-/// `sides` are those of the cell in m, `e_star` is E* in Pa, and `sliding` says how the surface slides.
+/// `sides` are those of the cell in m, `e_star` is E* in Pa, and `keys` say what the solid is and how the surface slides.
 #[must_use]
-pub(crate) fn solved(summary: &Summary, sides: [f64; 2], e_star: f64, sliding: Option<String>) -> String {
-    headline(summary) + &aligned(&solved_lines(summary, sides, e_star, sliding))
+pub(crate) fn solved(summary: &Summary, sides: [f64; 2], e_star: f64, keys: &ContactKeys) -> String {
+    headline(summary) + &aligned(&solved_lines(summary, sides, e_star, keys))
 }
 
 /// Text of the stiffness of the contact.
@@ -25,7 +27,7 @@ pub(crate) fn solved_lines(
     s: &Summary,
     sides: [f64; 2],
     e_star: f64,
-    sliding: Option<String>,
+    keys: &ContactKeys,
 ) -> Vec<(&'static str, String)> {
     let [nx, ny] = s.grid;
     let pascals = |value| engineering(value, "Pa");
@@ -61,7 +63,7 @@ pub(crate) fn solved_lines(
     }
     if let Some(friction) = friction(s) {
         lines.insert(4, ("friction", friction));
-        lines.splice(4..4, sliding.map(|sliding| ("sliding", sliding)));
+        lines.splice(4..4, sliding::in_words(keys).map(|sliding| ("sliding", sliding)));
     }
     if let Some(shear) = &s.shear {
         lines.splice(4..4, shear_lines(shear));
@@ -69,8 +71,11 @@ pub(crate) fn solved_lines(
     if let Some(plastic) = plastic(s) {
         let residual =
             s.residual_rms_height.map(|rms| ("unloaded surface", format!("rms height {}", engineering(rms, "m"))));
-        lines.splice(4..4, std::iter::once(("plastic area", plastic)).chain(residual));
+        let path = s.path_difference.map(|path| ("path", path_line(&path)));
+        lines.splice(4..4, std::iter::once(("plastic area", plastic)).chain(residual).chain(path));
     }
+    lines.splice(5..5, fluid(s).map(|fluid| ("fluid", fluid)));
+    lines.splice(2..2, elastic_layer::in_words(keys).map(|layer| ("solid", layer)));
     if let Some(leakage) = &s.leakage {
         lines.extend(leakage_lines(leakage));
     }
@@ -87,6 +92,26 @@ fn counts(evaluated: usize, proven: usize, n: usize) -> String {
     } else {
         format!("{evaluated} of several sizes evaluated, {proven} of the smallest size proven out of contact")
     }
+}
+
+/// Text of the parts of the load that fluid and contact bear; `None` without a fluid.
+fn fluid(s: &Summary) -> Option<String> {
+    let (fluid, contact) = (s.mean_fluid_pressure?, s.mean_contact_pressure?);
+    let percent = digits(100.0 * contact / s.mean_pressure, 4);
+    let [fluid, contact] = [fluid, contact].map(|mean| engineering(mean, "Pa"));
+    Some(format!("bears {fluid} of it, the contact {contact} ({percent} %), with the pressures below"))
+}
+
+/// Text of what the steps of a history change.
+fn path_line(path: &PathDifference) -> String {
+    let percent = |part: f64| format!("{:+.2} %", 100.0 * part);
+    format!(
+        "{} steps to each load against one: area {}, removed volume {}, rms height {}",
+        path.steps,
+        percent(path.area_fraction),
+        percent(path.removed_volume),
+        percent(path.residual_rms_height)
+    )
 }
 
 /// Text of the plastic part of the contact; `None` without a hardness.
@@ -192,7 +217,9 @@ const ROUNDING: f64 = 1e-12;
 
 fn surface_line(s: &Summary) -> String {
     let (rms, max) = (engineering(s.rms_height, "m"), engineering(s.h_max, "m"));
-    format!("rms height {rms}, rms slope {}, highest point {max}", digits(s.rms_slope, 4))
+    // After a history, the highest point is that of another surface than the rms height.
+    let of_last = if s.residual_rms_height.is_some() { " before the last load" } else { "" };
+    format!("rms height {rms}, rms slope {}, highest point {max}{of_last}", digits(s.rms_slope, 4))
 }
 
 fn certificate_line(s: &Summary) -> String {

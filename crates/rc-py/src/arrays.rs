@@ -54,8 +54,12 @@ pub(crate) fn metres(name: &str) -> Option<f64> {
 ///
 /// This is the only copy of the caller's heights. It becomes the heights in units of the cell.
 pub(crate) fn map_of(heights: &Heights<'_>, sides: Option<[f64; 2]>) -> PyResult<HeightMap> {
-    let field = Field::new(grid_of(heights)?, divided(heights, 1.0)?).map_err(bad_input)?;
-    Ok(HeightMap::new(field, Unit::Metre, sides, Unit::Metre))
+    Ok(HeightMap::new(field_of(heights)?, Unit::Metre, sides, Unit::Metre))
+}
+
+/// An array as a field, which is a copy.
+pub(crate) fn field_of(array: &Heights<'_>) -> PyResult<Field> {
+    Field::new(grid_of(array)?, divided(array, 1.0)?).map_err(bad_input)
 }
 
 /// The values of an array, each divided by `unit`.

@@ -1,12 +1,14 @@
 //! The function `solve`: from keys and heights to a solution.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rc_cli::error::CliError;
 use rc_cli::run::threads;
+use rc_cli::scene::fluid::FluidSource;
 use rc_cli::scene::keys::{KernelName, RunKeys, Scene};
 use rc_cli::scene::loaded::LoadedSurface;
 use rc_cli::scene::surface::Source;
@@ -32,6 +34,9 @@ pub(crate) struct Given<'py> {
     /// Sides of the cell of the heights along x and y (m), if they are known.
     #[pyo3(item)]
     sides: Option<[f64; 2]>,
+    /// Pressure of a fluid (Pa), row by row.
+    #[pyo3(item)]
+    fluid: Option<Heights<'py>>,
     /// Path of a scene file.
     #[pyo3(item)]
     scene: Option<PathBuf>,
@@ -95,6 +100,9 @@ fn scene_of(keys: &Bound<'_, PyDict>, given: &Given<'_>) -> PyResult<Scene> {
     if given.kernel.is_some() {
         scene.contact.kernel = Some(KernelName::Own);
     }
+    if given.fluid.is_some() {
+        scene.contact.fluid_pressure = Some("fluid_pressure.npy".into());
+    }
     Ok(scene)
 }
 
@@ -118,6 +126,9 @@ impl Prepared {
             None => CheckedScene::new(surface, contact),
         }
         .map_err(raised)?;
+        if let Some(fluid) = &given.fluid {
+            scene.contact.fluid = Some(FluidSource::Held(Arc::new(arrays::field_of(fluid)?)));
+        }
         scene.contact.params.method_follows_memory &= !given.is_row;
         scene.contact.creep = given.creep;
         let kernel = given.kernel.as_ref().map(|symbol| own_kernel(symbol, &scene, map.as_ref())).transpose()?;
@@ -138,7 +149,7 @@ impl Prepared {
             refuse(&problem.warnings(), true, "; nothing was solved")?;
         }
         let solved = scene.solve(problem, started, observer)?;
-        let SolvedParts { solution, failure, residual, flow, shear, warnings, wall } = solved.into_parts();
+        let SolvedParts { solution, failure, residual, path, fluid, flow, shear, warnings, wall } = solved.into_parts();
         let solution = solution.into_owned();
         // The heights of a map that is the caller's are not kept.
         let own_map = if is_callers { None } else { surface.shared_map() };
@@ -156,6 +167,8 @@ impl Prepared {
             solution,
             failure,
             residual,
+            path,
+            fluid,
             flow,
             shear,
             warnings,

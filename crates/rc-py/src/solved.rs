@@ -12,10 +12,10 @@ use rc_cli::scene::as_read::AsRead;
 use rc_cli::scene::keys::SurfaceKeys;
 use rc_cli::scene::resolve::ContactSetup;
 use rc_cli::scene::wave_file::WaveFile;
-use rc_cli::solve::{MapHeights, ResultFiles, SolvedFlow, SolvedShear};
+use rc_cli::solve::{MapHeights, ResultFiles, SolvedFlow, SolvedFluid, SolvedShear};
 use rc_core::{Field, Grid};
 use rc_solver::{Feature, GradientError, Held, Quantity, Solution, Status, refusal};
-use rc_sweep::{MapOrigin, Summary, Warning};
+use rc_sweep::{MapOrigin, PathDifference, Summary, Warning};
 
 use crate::arrays::{self, Heights};
 use crate::errors::{bad_input, raised};
@@ -34,6 +34,10 @@ pub(crate) struct Parts {
     pub(crate) solution: Solution<'static>,
     /// The unloaded surface after a history of loads (λ).
     pub(crate) residual: Option<Field>,
+    /// What the steps of the history change, if they were asked for.
+    pub(crate) path: Option<PathDifference>,
+    /// The fluid that presses on the surfaces, if there is one.
+    pub(crate) fluid: Option<SolvedFluid>,
     /// Message about a solution that did not reach the tolerance.
     pub(crate) failure: Option<String>,
     /// The flow through the gap, if it was asked for and converged.
@@ -81,8 +85,9 @@ impl Parts {
     fn files<'a>(&'a self, map: Option<MapHeights<'a>>) -> ResultFiles<'a> {
         let Self { surface, waves, contact, solution, flow, shear, warnings, origin, .. } = self;
         let (waves, flow, origin) = (waves.as_deref(), flow.as_ref(), origin.as_ref());
-        let (shear, residual) = (shear.as_ref(), self.residual.as_ref());
-        ResultFiles { surface, map, waves, contact, solution, residual, flow, shear, warnings, origin }
+        let (shear, residual, fluid) = (shear.as_ref(), self.residual.as_ref(), self.fluid.as_ref());
+        let path = self.path;
+        ResultFiles { surface, map, waves, contact, solution, residual, path, fluid, flow, shear, warnings, origin }
     }
 
     pub(crate) fn with_all_warnings(mut self) -> Self {
@@ -219,6 +224,12 @@ impl Solved {
         values.map(|values| arrays::array_of(py, self.found.parts.solution.grid(), values)).transpose()
     }
 
+    /// Pressure of the fluid (Pa), shape (ny, nx); `None` without one.
+    fn fluid_pressure<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let values = self.compute(py, |found| Some(found.parts.fluid.as_ref()?.pressure.values().to_vec()))?;
+        values.map(|values| arrays::array_of(py, self.found.parts.solution.grid(), values)).transpose()
+    }
+
     /// Tractions along x and y (Pa) and the length of the slip (m), shape (ny, nx); `None` without a shear.
     fn shear<'py>(&self, py: Python<'py>) -> PyResult<Option<[Bound<'py, PyArray2<f64>>; 3]>> {
         let (grid, units) = (self.found.parts.solution.grid(), [self.e_star(), self.e_star(), self.side()]);
@@ -233,6 +244,9 @@ impl Solved {
 
     /// Displacement (m) of mean zero, shape (ny, nx).
     fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        if self.found.parts.fluid.is_some() {
+            return Err(bad_input("displacement: under a fluid, it is heights + gap + a constant; add these"));
+        }
         self.array(py, self.side(), Solution::displacement)
     }
 
@@ -316,10 +330,11 @@ impl Solved {
         unit: f64,
         gradient: impl FnOnce(&Solution<'static>) -> Result<Field, GradientError> + Send + 'static,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        if let Some(refused) =
-            refusal(&[Feature::Gradient, Feature::Shear], None).filter(|_| self.found.parts.shear.is_some())
-        {
-            return Err(bad_input(refused));
+        let Parts { shear, fluid, .. } = &self.found.parts;
+        for (feature, is_there) in [(Feature::Shear, shear.is_some()), (Feature::FluidPressure, fluid.is_some())] {
+            if let Some(refused) = refusal(&[Feature::Gradient, feature], None).filter(|_| is_there) {
+                return Err(bad_input(refused));
+            }
         }
         let field = self.compute(py, move |found| Ok(in_unit(&gradient(&found.parts.solution)?, unit)))?;
         let values = field.map_err(|error: GradientError| bad_input(format_args!("gradient: {error}")))?;

@@ -76,6 +76,7 @@ pub use crate::solution::whole::Solution;
 pub use crate::solve::cost::Cost;
 pub use crate::solve::door::{solve, solve_with_operator};
 pub use crate::solve::error::SolveError;
+pub use crate::solve::fluid::{FluidProblem, UnderFluid};
 pub use crate::solve::history::History;
 pub use crate::solve::params::SolveParams;
 pub use crate::solve::plan::Plan;

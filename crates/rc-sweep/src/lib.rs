@@ -101,7 +101,7 @@ pub use row::Row;
 pub use row_solver::{RowError, RowSolver, RunError, Workers};
 pub use shard::{Shard, SweepShape};
 pub use shear::ShearSummary;
-pub use summary::{SecondBody, SolveContext, Summary, to_json};
+pub use summary::{PathDifference, SecondBody, SolveContext, Summary, to_json};
 pub use surfaces::{SurfaceError, SweptContact, SweptSurface};
 pub use sweep::Sweep;
 pub use table::{n_not_converged, to_csv};

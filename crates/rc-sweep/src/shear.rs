@@ -5,7 +5,7 @@ use rc_solver::ShearInfo;
 use serde::{Deserialize, Serialize};
 
 /// Keys of a summary for a contact that is sheared.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShearSummary {
     /// Coulomb's coefficient of friction, which was given.
     pub coulomb_friction: f64,
@@ -27,12 +27,15 @@ pub struct ShearSummary {
     pub shear_error: f64,
     /// Rounds of projected gradients that corrected the difference of two normal contacts.
     pub shear_rounds: usize,
+    /// What the shear neglects, if anything.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shear_note: Option<String>,
 }
 
 impl ShearSummary {
     /// The keys of a solved shear.
     #[must_use]
-    pub fn of(info: &ShearInfo, units: Units) -> Self {
+    pub fn of(info: &ShearInfo, units: Units, shear_note: Option<String>) -> Self {
         let shear_pressure = units.pascals(info.mean_shear);
         let stiffness = units.pascals_per_metre(info.stiffness);
         Self {
@@ -46,6 +49,7 @@ impl ShearSummary {
             slip_work: units.joules(info.slip_work),
             shear_error: info.error,
             shear_rounds: info.rounds,
+            shear_note,
         }
     }
 }

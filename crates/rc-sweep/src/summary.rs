@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use rc_core::Units;
-use rc_solver::{ErrorBound, Solution};
+use rc_solver::{ErrorBound, Solution, UnderFluid};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
@@ -48,6 +48,14 @@ pub struct Summary {
     pub mean_pressure: f64,
     /// Estimated discretisation error of `mean_pressure` (Pa). It is null under a given load.
     pub mean_pressure_error_bar: Option<f64>,
+    /// Mean pressure of a fluid (Pa). Pressures of the summary other than `mean_pressure` are those of the contact alone.
+    ///
+    /// This key and the next exist only with a fluid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_fluid_pressure: Option<f64>,
+    /// Mean of the pressure that the contact bears beside the fluid (Pa).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mean_contact_pressure: Option<f64>,
     /// Penetration Δ (m).
     pub penetration: f64,
     /// Estimated discretisation error of `penetration` at this load (m).
@@ -81,6 +89,9 @@ pub struct Summary {
     /// rms height of the unloaded surface after a history of loads (m).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub residual_rms_height: Option<f64>,
+    /// What steps to each load of a history change, if they were asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path_difference: Option<PathDifference>,
     /// Length of the edges of all contacts (m).
     pub contact_perimeter: Option<f64>,
     /// rms pressure over the cell (Pa), from the pressures of elements.
@@ -194,6 +205,19 @@ pub struct Summary {
     pub version: String,
 }
 
+/// Results of a history with steps to each load against those with one step, as relative differences.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PathDifference {
+    /// Steps to each load that is above the one before it.
+    pub steps: usize,
+    /// Difference of the contact area.
+    pub area_fraction: f64,
+    /// Difference of the volume that plastic flow has removed under all loads.
+    pub removed_volume: f64,
+    /// Difference of the rms height of the unloaded surface.
+    pub residual_rms_height: f64,
+}
+
 /// The elastic constants of the other body.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SecondBody {
@@ -272,6 +296,8 @@ impl Summary {
             levels: info.levels.len(),
             mean_pressure: units.pascals(info.mean_pressure),
             mean_pressure_error_bar: solution.mean_pressure_error().map(|error| units.pascals(error)),
+            mean_fluid_pressure: None,
+            mean_contact_pressure: None,
             penetration: units.metres(info.penetration),
             penetration_error_bar: Some(units.metres(solution.penetration_error())),
             penetration_full_contact: units.metres(info.penetration_full_contact),
@@ -283,6 +309,7 @@ impl Summary {
             plastic_area_fraction_error: observables.plastic.map(|plastic| plastic.error),
             mean_plastic_gap: observables.plastic.map(|plastic| units.metres(plastic.mean_gap)),
             residual_rms_height: None,
+            path_difference: None,
             contact_perimeter: Some(units.metres(observables.area.perimeter)),
             rms_pressure: units.pascals(observables.rms_pressure),
             rms_pressure_corrected: Some(units.pascals(observables.rms_pressure_corrected)),
@@ -328,10 +355,26 @@ impl Summary {
         }
     }
 
+    /// The summary of a contact under a fluid, from that of the contact pressure alone.
+    #[must_use]
+    pub fn under_fluid(self, both: &UnderFluid, units: Units) -> Self {
+        Self {
+            mean_contact_pressure: Some(self.mean_pressure),
+            mean_fluid_pressure: Some(units.pascals(both.mean_fluid_pressure)),
+            mean_pressure: units.pascals(both.mean_pressure),
+            penetration: units.metres(both.penetration),
+            penetration_error_bar: Some(units.metres(both.penetration_error)),
+            penetration_full_contact: units.metres(both.penetration_full_contact),
+            h_max: units.metres(both.h_max),
+            elastic_energy: units.joules(both.elastic_energy),
+            ..self
+        }
+    }
+
     /// The summary as the cells of a row.
     ///
-    /// The cell `warnings` has the codes of the warnings. There is no `source` and no
-    /// `second_body`. The cells of a flow are `permeance_x`, `permeance_y`, their
+    /// The cell `warnings` has the codes of the warnings. There is no `source`, no
+    /// `second_body` and no `path_difference`. The cells of a flow are `permeance_x`, `permeance_y`, their
     /// errors (all in m³), and `percolates` (along x and along y).
     ///
     /// # Panics
@@ -348,6 +391,7 @@ impl Summary {
         cells.insert("warnings".to_owned(), codes.into());
         cells.shift_remove("source");
         cells.shift_remove("second_body");
+        cells.shift_remove("path_difference");
         if let (Some(leakage), Some(_)) = (&self.leakage, cells.shift_remove("leakage")) {
             cells.extend(leakage.cells().map(|(column, value)| (column.to_owned(), value)));
         }

@@ -1,7 +1,7 @@
 // The page of a surface without a contact.
 
 /** The height map. */
-function heightMap({ sides, heights, span, lowest, note, mirrored }, field = new EmbeddedField(heights)) {
+function heightMap({ sides, heights, span, lowest, note, mirrored, is_left: isLeft }, field = new EmbeddedField(heights)) {
   const view = new SharedView(mirrored ? [0.25, 0.25] : [0.5, 0.5], Math.min(1, 8 / Math.max(heights.nx, heights.ny)));
   const height = (value) => si(value + lowest, "m");
   const map = new FieldMap({
@@ -19,7 +19,7 @@ function heightMap({ sides, heights, span, lowest, note, mirrored }, field = new
   if (mirrored) controls.prepend(make("button", { onclick: measured }, "measured quarter"));
   if (mirrored) measured();
   view.change();
-  return make("section", {}, make("h2", {}, "Heights of the surface"), map.element, controls, make("p", { class: "quiet" }, note));
+  return make("section", {}, make("h2", {}, isLeft ? "Heights of the unloaded surface" : "Heights of the surface"), map.element, controls, make("p", { class: "quiet" }, note));
 }
 
 /** The heights of a profile, and its measured half if the rest is its mirror image. */

@@ -4,7 +4,7 @@ use rc_sweep::Cells;
 use serde_json::Value;
 
 /// Numbers that say how a result was found, and not what it is.
-const BOOKKEEPING: [&str; 26] = [
+const BOOKKEEPING: [&str; 27] = [
     "seed",
     "control_value",
     "speed",
@@ -12,6 +12,7 @@ const BOOKKEEPING: [&str; 26] = [
     "gmres_iterations",
     "monotone_steps",
     "friction_bound",
+    "shear_rounds",
     "grid",
     "border_level",
     "elements",
@@ -34,8 +35,14 @@ const BOOKKEEPING: [&str; 26] = [
 ];
 
 /// Units of columns; others have none.
-const UNITS: [(&str, &str); 25] = [
+const UNITS: [(&str, &str); 31] = [
     ("mean_pressure", "Pa"),
+    ("mean_fluid_pressure", "Pa"),
+    ("mean_contact_pressure", "Pa"),
+    ("shear_pressure", "Pa"),
+    ("shear_force", "N"),
+    ("shear_displacement", "m"),
+    ("slip_work", "J"),
     ("rms_pressure", "Pa"),
     ("rms_pressure_corrected", "Pa"),
     ("max_pressure", "Pa"),

@@ -27,7 +27,8 @@ pub(crate) struct ExportArgs {
 
 const EXPORT_HELP: &str = "\
 --vtk writes fields.vti: pressure (Pa), gap (m) and contact (0 or 1). A solve of a height map adds height (m), and a solve with \
---leakage adds flow_x and flow_y (m²). All are values of the cells of an image. If the result has elements.csv (rc solve --elements), --vtk also writes elements.vtu: the elements of \
+--leakage adds flow_x and flow_y (m²), one with --friction shear_x, shear_y (Pa) and slip (m), and one with --fluid-pressure \
+that pressure (Pa). All are values of the cells of an image. If the result has elements.csv (rc solve --elements), --vtk also writes elements.vtu: the elements of \
 the adaptive mesh as quadrilaterals, with pressure (Pa) and size (m). Lengths are in m. In ParaView, open a file, choose Apply, and \
 colour by pressure. For a relief of a field, apply the filters Cell Data to Point Data and Warp By Scalar.
 

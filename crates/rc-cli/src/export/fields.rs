@@ -6,7 +6,7 @@ use rc_core::Field;
 
 use crate::error::CliError;
 use crate::files::flow::FLUX_FILES;
-use crate::files::names::HEIGHTS_FILE;
+use crate::files::names::{FLUID_FILE, HEIGHTS_FILE, SHEAR_FILES};
 use crate::files::result::{ResultFolder, in_cell};
 use crate::scene::heights::check_finite;
 
@@ -26,8 +26,9 @@ pub(super) struct Fields {
     pub(super) plastic_gap: Option<Field>,
     /// Height (m), of a height map.
     pub(super) height: Option<Field>,
-    /// Fluxes along x and y (m²) with their names.
-    pub(super) flow: Vec<(&'static str, Field)>,
+    /// Other fields with their names: fluxes along x and y (m²), tractions along them (Pa) and slip (m), and the pressure
+    /// of a fluid (Pa).
+    pub(super) others: Vec<(&'static str, Field)>,
     /// Meaning of 1 in [`Fields::contact`].
     ///
     /// It is `contact` for elements. It is `touched` for means over elements, which are above 0 if any of the elements
@@ -45,8 +46,8 @@ impl Fields {
         let height = heights.is_file().then(|| in_cell(&heights, pressure.grid().cell_ratio())).transpose()?;
         // With --output-grid, pressure and gap are on a coarser grid than the heights.
         let height = height.filter(|height| height.grid() == pressure.grid());
-        let flow = read_flow(folder, &pressure)?;
-        Ok(Self { status: summary.status, side, e_star, pressure, gap, plastic_gap, height, flow, contact_name })
+        let others = read_others(folder, &pressure)?;
+        Ok(Self { status: summary.status, side, e_star, pressure, gap, plastic_gap, height, others, contact_name })
     }
 
     /// 1 for each element with positive pressure, else 0.
@@ -55,21 +56,20 @@ impl Fields {
     }
 }
 
-/// The fluxes in the folder of a result.
-///
-/// They must be on the grid of its `pressure`; otherwise the list is empty.
-fn read_flow(folder: &Path, pressure: &Field) -> Result<Vec<(&'static str, Field)>, CliError> {
-    let mut flow = Vec::new();
-    for (file, name) in FLUX_FILES.into_iter().zip(["flow_x", "flow_y"]) {
+/// The other fields in the folder of a result, without those on another grid than its `pressure`.
+fn read_others(folder: &Path, pressure: &Field) -> Result<Vec<(&'static str, Field)>, CliError> {
+    let files = FLUX_FILES.into_iter().chain(SHEAR_FILES).chain([FLUID_FILE]);
+    let mut others = Vec::new();
+    for file in files {
         let path = folder.join(file);
         if path.is_file() {
             let field = in_cell(&path, pressure.grid().cell_ratio())?;
             check_finite(&path, &field)?;
-            flow.push((name, field));
+            others.push((file.trim_end_matches(".npy"), field));
         }
     }
-    flow.retain(|(_, field)| field.grid() == pressure.grid());
-    Ok(flow)
+    others.retain(|(_, field)| field.grid() == pressure.grid());
+    Ok(others)
 }
 
 /// An element with the columns of its file.

@@ -12,7 +12,7 @@ const VTK_QUAD: u8 = 9;
 ///
 /// A value belongs to an element, not to its corners.
 pub(super) fn image(fields: &Fields) -> Dataset<'_> {
-    let Fields { side, pressure, gap, plastic_gap, height, flow, .. } = fields;
+    let Fields { side, pressure, gap, plastic_gap, height, others, .. } = fields;
     let grid = pressure.grid();
     let mut cells = vec![
         Array::new(fields.contact_name, 1, Values::UInt8(fields.contact())),
@@ -22,7 +22,7 @@ pub(super) fn image(fields: &Fields) -> Dataset<'_> {
     for (name, field) in [("plastic_gap", plastic_gap), ("height", height)] {
         cells.extend(field.iter().map(|field| Array::new(name, 1, Values::Float64(field.values().into()))));
     }
-    cells.extend(flow.iter().map(|(name, flux)| Array::new(name, 1, Values::Float64(flux.values().into()))));
+    cells.extend(others.iter().map(|(name, field)| Array::new(name, 1, Values::Float64(field.values().into()))));
     let (dx, dy) = (side / grid.nx() as f64, side * grid.cell_ratio() / grid.ny() as f64);
     let extent = format!("0 {} 0 {} 0 0", grid.nx(), grid.ny());
     let whole = vec![

@@ -13,7 +13,7 @@ const PLANE: &[&str] = &["y", "x"];
 
 /// Pressure, gap, contact, heights if there are any, and coordinates of elements' centres.
 pub(super) fn group(fields: &Fields) -> Group<'_> {
-    let Fields { status, side, e_star, pressure, gap, plastic_gap, height, flow, contact_name } = fields;
+    let Fields { status, side, e_star, pressure, gap, plastic_gap, height, others, contact_name } = fields;
     let grid = pressure.grid();
     let plane = |name, units, meaning, values| Array {
         name,
@@ -44,13 +44,23 @@ pub(super) fn group(fields: &Fields) -> Group<'_> {
         let meaning = "height of the rigid surface, positive towards the half-space";
         plane("height", "m", meaning, Values::Float64(height.values().into()))
     }));
-    arrays.extend(flow.iter().map(|(name, flux)| {
-        let meaning = "flux of the film times 12 viscosity, divided by the pressure drop across the cell";
-        plane(name, "m2", meaning, Values::Float64(flux.values().into()))
+    arrays.extend(others.iter().map(|(name, field)| {
+        let (units, meaning) = unit_and_meaning(name);
+        plane(name, units, meaning, Values::Float64(field.values().into()))
     }));
     arrays.push(axis("y", &["y"], (0..grid.ny()).map(|iy| grid.centre(0, iy).y * side).collect()));
     arrays.push(axis("x", &["x"], (0..grid.nx()).map(|ix| grid.centre(ix, 0).x * side).collect()));
     Group { attributes: attributes(status, grid, *side, *e_star), arrays }
+}
+
+/// Unit and meaning of another field.
+fn unit_and_meaning(name: &str) -> (&'static str, &'static str) {
+    match name {
+        "shear_x" | "shear_y" => ("Pa", "tangential traction on the elastic body"),
+        "slip" => ("m", "length of the slip, 0 where the surfaces stick"),
+        "fluid_pressure" => ("Pa", "pressure of the fluid, which adds to the contact pressure"),
+        _ => ("m2", "flux of the film times 12 viscosity, divided by the pressure drop across the cell"),
+    }
 }
 
 /// The attributes of the group: its origin, the cell and the material.

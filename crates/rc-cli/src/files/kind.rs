@@ -7,9 +7,9 @@ use rc_sweep::settings_in;
 
 use super::flow;
 use super::names::{
-    COMPARISON_FILE, DIFFERENCE_FILE, GROUP, HEIGHTS_FILE, PAGE_FILE, PLASTIC_GAP_FILE, PREPARE_FILE, PSD_FILE,
-    RECORD_FILE, RESIDUAL_FILE, SCENE_FILE, SHEAR_FILE, SHEAR_FILES, SHEAR_TABLE, STUDY_FILE, SUMMARY_FILE, WATCH_FILE,
-    WAVES_FILE,
+    COMPARISON_FILE, DIFFERENCE_FILE, FLUID_FILE, GROUP, HEIGHTS_FILE, PAGE_FILE, PLASTIC_GAP_FILE, PREPARE_FILE,
+    PSD_FILE, RECORD_FILE, RESIDUAL_FILE, SCENE_FILE, SHEAR_FILE, SHEAR_FILES, SHEAR_MEANS, SHEAR_TABLE, STUDY_FILE,
+    SUMMARY_FILE, WATCH_FILE, WAVES_FILE,
 };
 use crate::error::CliError;
 
@@ -49,10 +49,11 @@ const OF_SURFACE: [&str; 13] = [
 const OF_PREPARE: [&str; 3] = [PREPARE_FILE, "before.png", "despiked.png"];
 
 /// Files of a solve, with those that `rc plot`, `rc export` and `rc compare` add.
-const OF_RESULT: [&str; 23] = [
+const OF_RESULT: [&str; 24] = [
     SUMMARY_FILE,
     "pressure.npy",
     "gap.npy",
+    FLUID_FILE,
     PLASTIC_GAP_FILE,
     RESIDUAL_FILE,
     SHEAR_FILES[0],
@@ -127,7 +128,7 @@ impl Kind {
         let more: &[&str] = match self {
             Self::Result => &OF_RESULT,
             Self::Surface => &OF_PREPARE,
-            Self::Shear => &[SHEAR_FILE, SHEAR_TABLE],
+            Self::Shear => &[SHEAR_FILE, SHEAR_TABLE, SHEAR_MEANS],
             Self::Sweep | Self::Study => return Staged::new(folder),
         };
         let staged = Staged::new(folder)?;

@@ -30,6 +30,9 @@ pub(crate) const SHEAR_FILE: &str = "shear.json";
 /// The table of shear curves.
 pub(crate) const SHEAR_TABLE: &str = "shear.csv";
 
+/// The table of their means over surfaces.
+pub(crate) const SHEAR_MEANS: &str = "shear_mean.csv";
+
 /// The picture of a running solve.
 pub(crate) const WATCH_FILE: &str = "watch.png";
 
@@ -47,6 +50,9 @@ pub(crate) const WAVES_FILE: &str = "spectrum.txt";
 
 /// Tangential tractions along x and y of a sheared contact, and the length of its slip.
 pub(crate) const SHEAR_FILES: [&str; 3] = ["shear_x.npy", "shear_y.npy", "slip.npy"];
+
+/// The pressure of a fluid (Pa) that was given.
+pub(crate) const FLUID_FILE: &str = "fluid_pressure.npy";
 
 /// The unloaded surface after a history of loads.
 pub(crate) const RESIDUAL_FILE: &str = "residual.npy";

@@ -33,7 +33,6 @@ use crate::scene::heights::CellOfMap;
 use crate::scene::keys::{RunKeys, Scene, SurfaceKeys};
 use crate::scene::loaded::LoadedSurface;
 use crate::scene::profile::Profile;
-use crate::scene::resolve::sliding;
 use crate::scene::values::GridSpec;
 use crate::scene::{file, heights, origin, resolve};
 use crate::text::{solved, written};
@@ -178,8 +177,7 @@ fn inspect_result(folder: &Path, json: bool) -> Result<(String, Vec<Warning>), C
         to_json(&ResultStatistics { summary: result.summary, pressure, warnings: warnings.clone() })
     } else {
         let scene = file::read(&folder.join(SCENE_FILE))?;
-        let sliding = sliding::in_words(&scene.contact);
-        solved(&result.summary, sides, result.e_star, sliding)
+        solved(&result.summary, sides, result.e_star, &scene.contact)
             + "\nstored pressure\n"
             + &text::pressure(&pressure, elements)
     };

@@ -19,7 +19,7 @@ use crate::error::CliError;
 use crate::files::result::ResultFolder;
 use crate::scene::file;
 use crate::scene::keys::{KernelName, Scene};
-use crate::scene::resolve::{self, shear, sliding};
+use crate::scene::resolve::{self, shear};
 use crate::text;
 use rc_core::quantity::{digits, engineering};
 use rc_plot::Palette;
@@ -99,7 +99,6 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
     let kernel = resolve::kernel(scene.contact.kernel.unwrap_or(KernelName::Love));
     let bias = kernel.map_or_else(EdgeBias::default, |kernel| kernel.edge_bias(result.pressure.grid()));
     let summary = &result.summary;
-    let sliding = sliding::in_words(&scene.contact);
     let direction = result.direction.map(|direction| direction.to_array());
     let load = match summary.control.as_str() {
         "penetration" => format!("at a penetration of {}", engineering(summary.penetration, "m")),
@@ -113,6 +112,8 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
         Ok(surface) => (Some(surface), None),
         Err(cause) => (None, Some(cause.to_string())),
     };
+    // Theory knows random surfaces at rest, without a fluid that bends them.
+    let is_other = scene.surface.has_shape() || direction.is_some() || summary.mean_fluid_pressure.is_some();
     Ok(Page {
         title: format!("Contact {load}"),
         subtitle: subtitle(&scene, &result),
@@ -129,14 +130,14 @@ pub(super) fn page(folder: &Path) -> Result<Page<Contact>, CliError> {
         kind: "result",
         body: Contact {
             maps: Maps { slip: slip_map(&result, &scene), ..maps(&result) },
-            kappa: surface.as_ref().filter(|_| !scene.surface.has_shape() && direction.is_none()).and_then(|surface| {
+            kappa: surface.as_ref().filter(|_| !is_other).and_then(|surface| {
                 kappa(summary, result.e_star, surface.nayak().filter(|_| scene.contact.layer_thickness.is_none()))
             }),
             surface,
             no_surface,
             stress: stress(&result),
             certificate: Certificate::of(summary),
-            lines: text::solved_lines(summary, result.sides(), result.e_star, sliding),
+            lines: text::solved_lines(summary, result.sides(), result.e_star, &scene.contact),
             direction,
             leakage: FlowPicture::of(folder, summary),
             // This comes last, since it takes the fields.
@@ -215,7 +216,7 @@ fn commands(folder: &Path, scene: &Scene) -> Vec<Command> {
         note: "With the scene file of the result folder, to the last digit:".to_owned(),
         text: format!("rc solve {path} --out again"),
     }];
-    if scene.surface.file().is_none() {
+    if scene.surface.file().is_none() && scene.contact.fluid_pressure.is_none() {
         let text = format!("rc solve{}{} --out again", flags(&scene.surface), flags(&scene.contact));
         commands.push(Command { note: "Without any file:".to_owned(), text });
     }
@@ -297,8 +298,9 @@ fn stress(result: &ResultFolder) -> Option<Stress> {
     let distribution = StressDistribution::with_area(pressure, &edges, summary.area_fraction);
     let stress: Vec<f64> = edges.windows(2).map(|edge| 0.5 * (edge[0] + edge[1])).collect();
     let points: Vec<(f64, f64)> = stress.iter().copied().zip(distribution.density.iter().copied()).collect();
-    let fit = Persson::fit(summary.mean_pressure, &points);
-    let theory = Persson::from_rms_slope(summary.mean_pressure / e_star, summary.rms_slope);
+    let mean_pressure = summary.mean_contact_pressure.unwrap_or(summary.mean_pressure);
+    let fit = Persson::fit(mean_pressure, &points);
+    let theory = Persson::from_rms_slope(mean_pressure / e_star, summary.rms_slope);
     let over = if least > 0.0 {
         "The density is over the whole nominal area. Every element is in contact, and the first bin begins at the minimum pressure."
     } else {

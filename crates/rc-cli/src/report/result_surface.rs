@@ -3,14 +3,17 @@
 use std::path::Path;
 
 use rc_core::{Field, Grid};
+use rc_fractal::moments_of_grid;
 use rc_sweep::memory::Budget;
 use serde::Serialize;
 
 use super::surface::SurfaceBody;
 use crate::error::CliError;
 use crate::files::coarsen::{BlockMean, check_factor};
-use crate::files::result::ResultFolder;
+use crate::files::names::RESIDUAL_FILE;
+use crate::files::result::{ResultFolder, in_cell};
 use crate::inspect::record::SurfaceRecord;
+use crate::scene::heights::check_finite;
 use crate::scene::keys::Scene;
 use crate::scene::loaded::LoadedSurface;
 use crate::scene::resolve;
@@ -27,6 +30,8 @@ const POINTS: usize = 1000;
 pub(super) struct ResultSurface {
     #[serde(flatten)]
     body: SurfaceBody,
+    /// Whether it is the surface that plastic flow has left.
+    is_left: bool,
     /// What has to be added to a height (m), so that it is counted from the undeformed elastic surface.
     shift: f64,
     /// Sections along x and y through the maximum pressure; empty if the heights on the grid of the fields are not known.
@@ -51,7 +56,8 @@ struct BodySection {
 }
 
 impl ResultSurface {
-    /// The surface of the scene at `path`, of which `result` is the result.
+    /// The surface of the scene at `path`, of which `result` is the result. After a history of loads, it is the surface
+    /// that plastic flow has left.
     ///
     /// # Errors
     /// [`CliError::Input`] when the surface cannot be read or is flat, and when its heights do not fit the memory.
@@ -63,30 +69,36 @@ impl ResultSurface {
         let stored = result.pressure.grid();
         let has_elements = result.is_of_elements() && same_elements(surface.grid, stored);
         let budget = Budget::new(scene.run.memory_limit);
+        let left = left_by_flow(path, surface.grid, side)?;
         let full = has_elements
             .then(|| {
                 budget.check_grid("the surface", surface.grid)?;
-                surface.heights().map(std::borrow::Cow::into_owned)
+                left.clone().map_or_else(|| surface.heights().map(std::borrow::Cow::into_owned), Ok)
             })
             .transpose()?;
-        let blocks = if result.is_of_elements() { None } else { means_over_blocks(&surface, stored, budget) };
-        let coarse = sampled(&mut surface)?;
+        let blocks = if result.is_of_elements() { None } else { means_over_blocks((&surface, &left), stored, budget) };
+        let is_left = left.is_some();
+        let coarse = left.map_or_else(|| sampled(&mut surface), Ok)?;
         let heights = full.as_ref().unwrap_or(&coarse);
         if heights.max() <= heights.min() {
             return Err(CliError::input("the surface is flat"));
         }
         let summary = &result.summary;
         let source = summary.source.clone().or_else(|| surface.origin.clone());
-        let record = SurfaceRecord {
-            rms_height: summary.rms_height,
-            rms_slope: summary.rms_slope,
-            ..SurfaceRecord::of_source(&coarse, side, surface.moments(&coarse), source)
+        let record = if is_left {
+            SurfaceRecord::of_source(&coarse, side, moments_of_grid(&coarse), source)
+        } else {
+            SurfaceRecord {
+                rms_height: summary.rms_height,
+                rms_slope: summary.rms_slope,
+                ..SurfaceRecord::of_source(&coarse, side, surface.moments(&coarse), source)
+            }
         };
         let shift = summary.penetration - summary.h_max;
         let of_sections = full.as_ref().or(blocks.as_ref());
         let sections = of_sections.map_or_else(Vec::new, |heights| sections(heights, result, shift));
         let (body, of_blocks) = (SurfaceBody::of(heights, &record), blocks.is_some());
-        Ok(Self { body, shift, sections, of_blocks, nayak: record.nayak })
+        Ok(Self { body, is_left, shift, sections, of_blocks, nayak: record.nayak })
     }
 
     /// Nayak's parameter of the surface.
@@ -95,15 +107,30 @@ impl ResultSurface {
     }
 }
 
-/// The heights (in λ) of a surface, as means over the blocks of the `stored` fields.
+/// The heights (in λ) that plastic flow has left after a history of loads; `None` without one.
+fn left_by_flow(scene: &Path, grid: Grid, side: f64) -> Result<Option<Field>, CliError> {
+    let path = scene.with_file_name(RESIDUAL_FILE);
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let mut heights = in_cell(&path, grid.cell_ratio())?;
+    check_finite(&path, &heights)?;
+    heights.values_mut().iter_mut().for_each(|height| *height /= side);
+    Ok(Some(heights).filter(|heights| same_elements(heights.grid(), grid)))
+}
+
+/// The heights (in λ) of a surface, or those that flow has left, as means over the blocks of the `stored` fields.
 ///
 /// `None` if the surface does not have such blocks, or does not fit the memory.
-fn means_over_blocks(surface: &LoadedSurface, stored: Grid, budget: Budget) -> Option<Field> {
+fn means_over_blocks((surface, left): (&LoadedSurface, &Option<Field>), stored: Grid, budget: Budget) -> Option<Field> {
     let spec = GridSpec { nx: stored.nx(), ny: stored.ny() };
     check_factor(surface.grid, spec).ok()?;
     budget.check_grid("the surface", surface.grid).ok()?;
     let mut means = BlockMean::new(surface.grid, spec);
-    means.take(surface.heights().ok()?.values());
+    match left {
+        Some(left) => means.take(left.values()),
+        None => means.take(surface.heights().ok()?.values()),
+    }
     Some(means.finish())
 }
 

@@ -4,7 +4,9 @@ use rc_core::quantity::{count, digits, engineering};
 use serde::Serialize;
 
 use super::page::{Command, Page, Tile, made};
-use crate::shear::record::{CurvePoint, ShearCurve, ShearRecord};
+use crate::shear::curve::{CurvePoint, ShearCurve};
+use crate::shear::means::{MeanCurve, MeanPoint};
+use crate::shear::record::ShearRecord;
 
 /// The data of a page of shear curves, without those of all pages.
 #[derive(Clone, Debug, Serialize)]
@@ -46,7 +48,7 @@ pub(super) fn page(record: &ShearRecord) -> Page<Body> {
         made: made(),
         kind: "shear",
         body: Body {
-            curves: record.curves.iter().map(curve).collect(),
+            curves: record.curves.iter().map(curve).chain(record.means.iter().map(mean)).collect(),
             heads: [
                 "surface and load",
                 "sliding begins at",
@@ -58,7 +60,7 @@ pub(super) fn page(record: &ShearRecord) -> Page<Body> {
             ],
             rows: record.curves.iter().map(row).collect(),
             note: "A curve ends where its load curve does, at its smallest load. The error is the difference to the curve from \
-                   every second load, which is larger than the error of the curve. The loop is Masing's, between ±0.9 of the \
+                   every second load, which is larger than the error of the curve; of a mean over surfaces, the bar is their spread. The loop is Masing's, between ±0.9 of the \
                    largest shear. The loss factor is the loss of a cycle over 2π times τ d/2.",
         },
     }
@@ -96,6 +98,23 @@ fn curve(curve: &ShearCurve) -> Curve {
             .collect(),
         hysteresis: curve.hysteresis.clone(),
         slip: against(|point| Some(slip_part(point))),
+        loss: against(|point| point.loss_factor),
+        energy: against(|point| Some(point.loss_per_cycle).filter(|loss| *loss > 0.0)),
+    }
+}
+
+/// The mean over surfaces, whose bars are the spread.
+fn mean(mean: &MeanCurve) -> Curve {
+    let part = |point: &MeanPoint| point.shear_pressure / mean.sliding_pressure;
+    let against = |value: fn(&MeanPoint) -> Option<f64>| -> Vec<[f64; 2]> {
+        mean.points.iter().filter_map(|point| Some([part(point), value(point)?])).collect()
+    };
+    let shear = |point: &MeanPoint| [point.shear_displacement, point.shear_pressure, point.shear_displacement_spread];
+    Curve {
+        name: mean.name(),
+        shear: mean.points.iter().map(shear).collect(),
+        hysteresis: Vec::new(),
+        slip: against(|point| Some(point.slip_area_fraction / (point.slip_area_fraction + point.stick_area_fraction))),
         loss: against(|point| point.loss_factor),
         energy: against(|point| Some(point.loss_per_cycle).filter(|loss| *loss > 0.0)),
     }

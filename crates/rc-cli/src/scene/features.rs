@@ -17,6 +17,7 @@ pub(crate) fn of_contact(keys: &ContactKeys) -> Vec<Feature> {
         (Feature::Penetration, keys.penetration.is_some()),
         (Feature::Hardness, keys.hardness.is_some()),
         (Feature::History, keys.history.is_some()),
+        (Feature::FluidPressure, keys.fluid_pressure.is_some()),
         (Feature::BorderLevel, keys.border_level.is_some_and(|level| level > 0)),
         (Feature::AreaError, keys.area_error.is_some()),
         (Feature::Leakage, keys.leakage),

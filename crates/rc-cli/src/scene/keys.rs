@@ -234,6 +234,19 @@ pub struct ContactKeys {
     #[arg(long, value_name = "P1,P2", help_heading = help::PHYSICS, allow_hyphen_values = true)]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub history: Option<HistorySpec>,
+    /// Reach each higher load of --history in N equal steps, and compare with one
+    ///
+    /// Plastic flow depends on the path. path_difference of the summary is what the steps change.
+    #[arg(long, value_name = "N", help_heading = help::PHYSICS, hide_short_help = true, allow_hyphen_values = true)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub history_steps: Option<usize>,
+    /// Pressure of a fluid (Pa) on the grid, .npy or text: none is below it
+    ///
+    /// One value for each element. The surfaces touch where the pressure exceeds it. The load is that of both; pressures
+    /// of the results are those of the contact alone, without the fluid.
+    #[arg(long, value_name = "FILE", help_heading = help::PHYSICS)]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fluid_pressure: Option<PathBuf>,
     /// Speed (m/s) of sliding over a solid that relaxes: adds friction
     ///
     /// Steady sliding along +x, or along --direction. The moduli of the solid are the relaxed ones.
@@ -498,7 +511,8 @@ impl Scene {
     pub fn relative_to(mut self, folder: &Path) -> Self {
         let SurfaceKeys { heights, spectrum, psd, like, add, .. } = &mut self.surface;
         let prony = self.contact.prony.as_mut().and_then(PronySpec::path);
-        for path in [heights, spectrum, psd, like, add, &mut self.run.out].into_iter().flatten().chain(prony) {
+        let others = [&mut self.contact.fluid_pressure, &mut self.run.out];
+        for path in [heights, spectrum, psd, like, add].into_iter().chain(others).flatten().chain(prony) {
             *path = folder.join(&*path);
         }
         self

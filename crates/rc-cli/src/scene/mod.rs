@@ -3,6 +3,7 @@
 pub mod as_read;
 pub(crate) mod features;
 pub mod file;
+pub mod fluid;
 pub mod form;
 pub mod keys;
 pub(crate) mod like;

@@ -6,8 +6,10 @@ use rc_sweep::to_json;
 use rc_theory::partial_slip::Friction;
 
 use super::args::ShearArgs;
+use super::curve::ShearCurve;
 use super::curves::SurfaceCurve;
-use super::record::{ShearCurve, ShearRecord};
+use super::means;
+use super::record::ShearRecord;
 use crate::curves::table::SweepTable;
 use crate::error::CliError;
 use crate::files::kind::Kind;
@@ -43,7 +45,8 @@ pub(crate) fn run(args: &ShearArgs) -> Result<(), CliError> {
 fn record(args: &ShearArgs) -> Result<ShearRecord, CliError> {
     let path = &args.curve;
     let table = SweepTable::read(path)?;
-    let mut record = ShearRecord { command: command(args), friction: args.friction, notes: vec![], curves: vec![] };
+    let mut record =
+        ShearRecord { command: command(args), friction: args.friction, notes: vec![], curves: vec![], means: vec![] };
     for surface in SurfaceCurve::all(path, &table, args.poisson)? {
         let friction = Friction { coefficient: args.friction, compliance_ratio: surface.compliance_ratio };
         for (row, curve) in surface.loads(path, args.every_load)? {
@@ -51,6 +54,7 @@ fn record(args: &ShearArgs) -> Result<ShearRecord, CliError> {
         }
         record.notes.extend(surface.note.filter(|note| !record.notes.contains(note)));
     }
+    record.means = means::of(&record.curves);
     Ok(record)
 }
 

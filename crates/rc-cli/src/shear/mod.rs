@@ -5,6 +5,8 @@
 
 pub(crate) mod args;
 pub(crate) mod command;
+pub(crate) mod curve;
+pub(crate) mod means;
 pub(crate) mod record;
 
 mod curves;

@@ -19,7 +19,6 @@ use crate::run::threads;
 use crate::run::together::together;
 use crate::run::watch::Watch;
 use crate::scene::keys::{RunKeys, Scene};
-use crate::scene::resolve::sliding;
 use crate::warnings::shown;
 use crate::{terminal, text};
 
@@ -173,8 +172,8 @@ impl Job {
             (false, true) => Ok(()),
             (false, false) => {
                 let units = self.scene.contact.units;
-                let sliding = sliding::in_words(&self.scene.contact.keys);
-                let text = text::solved(summary, units.cell().sides(), units.elasticity().e_star(), sliding);
+                let keys = &self.scene.contact.keys;
+                let text = text::solved(summary, units.cell().sides(), units.elasticity().e_star(), keys);
                 let is_lost = self.scene.contact.keys.elements && !has_elements;
                 let note = if is_lost { NO_ELEMENTS } else { "" };
                 let of_shear = self.scene.contact.shear.as_ref().and_then(|shear| shear.note.clone());

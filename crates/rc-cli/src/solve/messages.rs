@@ -69,6 +69,16 @@ fn of_problem(error: &ProblemError, contact: &ContactSetup) -> CliError {
             units.pascals(*hardness),
             units.pascals(*value)
         )),
+        ProblemError::FluidBears { value, fluid } => CliError::input(format_args!(
+            "fluid_pressure: its mean, {} Pa, already bears the mean pressure of {} Pa; the load must be above it",
+            digits(units.pascals(*fluid), 7),
+            digits(units.pascals(*value), 7)
+        )),
+        ProblemError::FluidParts { value, touching } => CliError::input(format_args!(
+            "penetration: must be above {} m, where the surfaces first touch under the fluid, not {} m",
+            digits(units.metres(*touching), 7),
+            digits(units.metres(*value), 7)
+        )),
         ProblemError::Hardness { value } => {
             CliError::input(format_args!("hardness: must be positive (Pa), not {}", units.pascals(*value)))
         }

@@ -12,6 +12,7 @@ pub(crate) mod leakage;
 mod map_file;
 mod messages;
 mod over_ranks;
+mod path;
 mod result_files;
 mod shared_fields;
 pub(crate) mod shear;
@@ -24,7 +25,7 @@ pub(crate) use leakage::memory_factor;
 pub use over_ranks::main_over_ranks;
 pub use result_files::{MapHeights, ResultFiles};
 pub use shear::SolvedShear;
-pub use solved::{ProblemSetup, Solved, SolvedParts};
+pub use solved::{ProblemSetup, Solved, SolvedFluid, SolvedParts};
 
 use std::path::PathBuf;
 

@@ -11,15 +11,16 @@ use rc_heights::npy::{Precision, RowWriter};
 use rc_plot::{ContactRows, save_png};
 use rc_solver::{ContactElement, Solution, Status};
 use rc_sweep::files::{FileError, Staged};
-use rc_sweep::{MapOrigin, SecondBody, SolveContext, Summary, Warning};
+use rc_sweep::{MapOrigin, PathDifference, SecondBody, SolveContext, Summary, Warning};
 
 use super::leakage::SolvedFlow;
 use super::map_file::MapFile;
 use super::shear::SolvedShear;
+use super::solved::SolvedFluid;
 use super::{flow_files, shared_fields, shear};
 use crate::error::CliError;
 use crate::files::kind::Kind;
-use crate::files::names::{GROUP, HEIGHTS_FILE, PLASTIC_GAP_FILE, RESIDUAL_FILE, SCENE_FILE, SUMMARY_FILE};
+use crate::files::names::{FLUID_FILE, GROUP, HEIGHTS_FILE, PLASTIC_GAP_FILE, RESIDUAL_FILE, SCENE_FILE, SUMMARY_FILE};
 use crate::scene::as_read::AsRead;
 use crate::scene::file;
 use crate::scene::keys::{ContactKeys, SurfaceKeys};
@@ -44,6 +45,10 @@ pub struct ResultFiles<'a> {
     pub solution: &'a Solution<'a>,
     /// The unloaded surface after a history of loads (λ).
     pub residual: Option<&'a Field>,
+    /// What the steps of the history change, if they were asked for.
+    pub path: Option<PathDifference>,
+    /// The fluid that presses on the surfaces, if there is one.
+    pub fluid: Option<&'a SolvedFluid>,
     /// The flow through the gap, if it was asked for.
     pub flow: Option<&'a SolvedFlow>,
     /// The shear of the contact, if it was asked for.
@@ -93,6 +98,10 @@ impl ResultFiles<'_> {
         };
         let leakage = self.flow.map(|flow| flow.summary.clone());
         let summary = Summary::of(self.solution, self.contact.units, &context);
+        let summary = match self.fluid {
+            Some(SolvedFluid { both, .. }) => summary.under_fluid(both, self.contact.units),
+            None => summary,
+        };
         let warnings = self.all_warnings();
         let keys = &self.contact.keys;
         let second_body = keys.young2.zip(keys.poisson2).map(|(young, poisson)| SecondBody { young, poisson });
@@ -104,11 +113,17 @@ impl ResultFiles<'_> {
         let least_pressure_rise = self.contact.creep.and_then(|_| self.solution.least_pressure_rise());
         let residual_rms_height =
             self.residual.map(|heights| self.contact.units.metres(height_and_slope_of_grid(heights)[0]));
+        // A load that an earlier one has prepared just reaches the hardness, and any smaller one does not.
+        let is_again = self.contact.is_reloaded();
+        let plastic_area_fraction_error =
+            if is_again { summary.plastic_area_fraction } else { summary.plastic_area_fraction_error };
         Summary {
             status,
             control,
             force,
             residual_rms_height,
+            path_difference: self.path,
+            plastic_area_fraction_error,
             least_pressure_rise,
             leakage,
             shear,
@@ -183,11 +198,13 @@ impl ResultFiles<'_> {
         if let Some(map) = self.map {
             staged.add(HEIGHTS_FILE, |path| map.write(path))?;
         }
-        if let Some(residual) = self.residual {
-            staged.add(RESIDUAL_FILE, |path| {
-                let side = self.contact.units.cell().side();
-                let mut file = RowWriter::create(path, residual.grid(), side, Precision::Double)?;
-                file.write(residual.values())?;
+        let side = self.contact.units.cell().side();
+        let residual = self.residual.map(|residual| (RESIDUAL_FILE, residual, side));
+        let fluid = self.fluid.map(|fluid| (FLUID_FILE, &fluid.pressure, 1.0));
+        for (name, field, unit) in residual.into_iter().chain(fluid) {
+            staged.add(name, |path| {
+                let mut file = RowWriter::create(path, field.grid(), unit, Precision::Double)?;
+                file.write(field.values())?;
                 file.finish()
             })?;
         }
@@ -290,7 +307,9 @@ fn scene_text(surface: &SurfaceKeys, contact: &ContactKeys, solution: &Solution<
     let grid = solution.grid();
     let grid = GridSpec { nx: grid.nx(), ny: grid.ny() };
     let surface = SurfaceKeys { grid: Some(grid), ..surface.clone() };
-    let contact = ContactKeys { method: Some(solution.method()), ..contact.clone() };
+    // The folder has its own copy.
+    let fluid_pressure = contact.fluid_pressure.as_ref().map(|_| FLUID_FILE.into());
+    let contact = ContactKeys { method: Some(solution.method()), fluid_pressure, ..contact.clone() };
     let [surface, contact] = [file::to_toml(&surface), file::to_toml(&contact)];
     format!("# The scene as it was solved: `rc solve scene.toml` repeats the result.\n\n{surface}\n{contact}")
 }

@@ -2,7 +2,7 @@
 
 use rc_core::quantity::engineering;
 use rc_core::{Observer, Units};
-use rc_solver::{Plan, ShearError, ShearSolution, Solution, SolveError};
+use rc_solver::{Plan, ShearControl, ShearError, ShearSolution, Solution, SolveError};
 use rc_sweep::ShearSummary;
 use rc_sweep::files::{FileError, Staged};
 use rc_sweep::memory::ByteSize;
@@ -47,13 +47,18 @@ impl SolvedShear {
             }
             ShearError::Normal(SolveError::NotConverged { .. }) => Ok((None, Some(failure))),
             ShearError::Normal(other) => Err(refuse(&other)),
-            other => Err(in_si(&other, units)),
+            other => {
+                let is_force = matches!(setup.params.control, ShearControl::MeanShear(_));
+                Err(in_si(&other, units, is_force))
+            }
         }
     }
 
     /// Its part of the summary, in SI units.
     pub(super) fn summary(&self, contact: &ContactSetup) -> ShearSummary {
-        ShearSummary::of(&self.solution.info, contact.units)
+        let note = contact.shear.as_ref().and_then(|shear| shear.note.as_deref());
+        let note = note.map(|note| note.trim_start_matches("note: ").to_owned());
+        ShearSummary::of(&self.solution.info, contact.units, note)
     }
 }
 
@@ -61,13 +66,23 @@ impl SolvedShear {
 const REMEDY: &str = "; give a larger energy tolerance or a longer time limit";
 
 /// A refusal of the solver in SI units.
-fn in_si(error: &ShearError, units: Units) -> CliError {
+fn in_si(error: &ShearError, units: Units, is_force: bool) -> CliError {
     match *error {
         ShearError::Sliding { shear, limit } => slides(units.pascals(shear), units.pascals(limit)),
         ShearError::SlipsAll { displacement, limit } => CliError::input(format_args!(
             "shear_displacement: at {} the surface slides as a whole, which begins at {}; give less",
             engineering(units.metres(displacement), "m"),
             engineering(units.metres(limit), "m")
+        )),
+        ShearError::TooSmall { value, least } if is_force => CliError::input(format_args!(
+            "shear_pressure: {:e} Pa cannot be told from no shear under this load; give at least {:e} Pa",
+            units.pascals(value),
+            units.pascals(least)
+        )),
+        ShearError::TooSmall { value, least } => CliError::input(format_args!(
+            "shear_displacement: {:e} m cannot be told from no shear in this contact; give at least {:e} m",
+            units.metres(value),
+            units.metres(least)
         )),
         ShearError::Memory { grid, needed, limit } => CliError::input(format_args!(
             "memory_limit: a shear on {grid} elements needs about {}, more than the {} that may be used; give a coarser grid",

@@ -5,13 +5,14 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rc_core::{Boundary, Field, Kernel, Observer};
-use rc_solver::{ContactProblem, Cost, History, Plan, Solution, SolveError, SolveParams};
+use rc_solver::{ContactProblem, Cost, FluidProblem, History, Plan, Solution, SolveError, SolveParams, UnderFluid};
 use rc_sweep::memory::Budget;
-use rc_sweep::{RowProblem, SolvedRow, Summary, Warning};
+use rc_sweep::{PathDifference, RowProblem, SolvedRow, Summary, Warning};
 
 use super::failure::Failure;
 use super::leakage::{self, SolvedFlow};
 use super::messages;
+use super::path;
 use super::result_files::{MapHeights, ResultFiles};
 use super::shear::SolvedShear;
 use crate::error::CliError;
@@ -42,6 +43,10 @@ pub struct Solved<'a> {
     failure: Option<Failure>,
     /// The unloaded surface after a history of loads (λ), if it converged.
     residual: Option<Field>,
+    /// What the steps of the history change, if they were asked for.
+    path: Option<PathDifference>,
+    /// The fluid that presses on the surfaces, if there is one.
+    fluid: Option<SolvedFluid>,
     /// The flow through the gap, if it was asked for.
     flow: Option<SolvedFlow>,
     /// The shear of the contact, if it was asked for.
@@ -60,6 +65,10 @@ pub struct SolvedParts<'a> {
     pub failure: Option<Failure>,
     /// The unloaded surface after a history of loads (λ), if it converged.
     pub residual: Option<Field>,
+    /// What the steps of the history change, if they were asked for.
+    pub path: Option<PathDifference>,
+    /// The fluid that presses on the surfaces, if there is one.
+    pub fluid: Option<SolvedFluid>,
     /// The flow through the gap, if it was asked for and converged.
     pub flow: Option<SolvedFlow>,
     /// The shear of the contact, if it was asked for and solved.
@@ -70,6 +79,18 @@ pub struct SolvedParts<'a> {
     pub wall: Duration,
 }
 
+/// A fluid that presses on the surfaces of a solved contact.
+#[derive(Clone, Debug)]
+pub struct SolvedFluid {
+    /// Its pressure (Pa), as it was given.
+    pub pressure: Field,
+    /// The results of fluid and contact together.
+    pub both: UnderFluid,
+}
+
+/// A problem under a fluid, with the pressure of the fluid (Pa).
+type Fluid<'a> = (FluidProblem<'a>, Field);
+
 impl<'a> ProblemSetup<'a> {
     /// Checks the problem and chooses the method.
     ///
@@ -77,9 +98,28 @@ impl<'a> ProblemSetup<'a> {
     /// [`CliError::Input`] when the scene, the requested method or the available memory does not allow it.
     pub(crate) fn plan(&self) -> Result<Plan<'a>, CliError> {
         self.check_grid()?;
-        let plan = self.contact_problem().plan(&self.params()).map_err(|error| self.refuse(&error))?;
+        self.plan_under(self.fluid()?.as_ref())
+    }
+
+    /// [`ProblemSetup::plan`] under a fluid, if there is one.
+    fn plan_under(&self, fluid: Option<&Fluid<'a>>) -> Result<Plan<'a>, CliError> {
+        let plan = match fluid {
+            None => self.contact_problem().plan(&self.params()),
+            Some((problem, _)) => problem.plan(),
+        };
+        let plan = plan.map_err(|error| self.refuse(&error))?;
         self.check_flow(&plan)?;
         Ok(plan)
+    }
+
+    /// The problem under a fluid, if there is one.
+    fn fluid(&self) -> Result<Option<Fluid<'a>>, CliError> {
+        let Some(source) = &self.contact.fluid else { return Ok(None) };
+        let pascals = source.load(self.surface.grid)?;
+        let mut pressure = pascals.clone();
+        pressure.values_mut().iter_mut().for_each(|value| *value = self.contact.units.pressure(*value));
+        let problem = self.contact_problem().with_fluid_pressure(pressure, &self.params());
+        Ok(Some((problem.map_err(|error| self.refuse(&error))?, pascals)))
     }
 
     /// Solves the problem; nothing is written.
@@ -89,7 +129,14 @@ impl<'a> ProblemSetup<'a> {
     /// # Errors
     /// [`CliError::Input`]. A solution that did not converge is not an error, see [`Solved::failure`].
     pub fn solve(self, started: Instant, observer: &dyn Observer) -> Result<Solved<'a>, CliError> {
-        let plan = self.plan()?;
+        self.check_grid()?;
+        let fluid = self.fluid()?;
+        let plan = self.plan_under(fluid.as_ref())?;
+        if let Some((problem, pressure)) = fluid {
+            let solved = self.solved(plan.solve(observer), started)?;
+            let both = problem.of(&solved.solution);
+            return Ok(Solved { fluid: Some(SolvedFluid { pressure, both }), ..solved });
+        }
         if !self.contact.history.is_empty() {
             drop(plan);
             return self.solve_history(started, observer);
@@ -107,15 +154,28 @@ impl<'a> ProblemSetup<'a> {
         Ok(Solved { shear, failure, wall: started.elapsed(), ..solved })
     }
 
-    /// Solves the loads of a history, one after the other.
+    /// Solves the loads of a history, one after the other. With steps, also without them.
     fn solve_history(self, started: Instant, observer: &dyn Observer) -> Result<Solved<'a>, CliError> {
-        let (mut residual, loads) = (None, &self.contact.history);
-        let result = self.contact_problem().solve_history(loads, &self.params(), observer).map(|found| {
-            let History { solution, residual: left } = found;
-            residual = Some(left);
-            solution
-        });
-        Ok(Solved { residual, ..self.solved(result, started)? })
+        let follow = |loads: &[f64]| self.contact_problem().solve_history(loads, &self.params(), observer);
+        let found = match follow(&self.contact.history) {
+            Ok(found) => found,
+            Err(error) => return self.solved(Err(error), started),
+        };
+        let (mut path, mut failure) = (None, None);
+        if let Some(steps) = self.contact.keys.history_steps {
+            match follow(&self.contact.loads_of_history()) {
+                Ok(one) => path = Some(path::difference(steps, &*self.surface.heights()?, [&one, &found])),
+                Err(SolveError::NotConverged { grid, iterations, solution, .. }) => {
+                    let of_one = messages::not_converged(&solution, grid, iterations, self.contact);
+                    failure = Some(Failure { what: format!("history in one step: {}", of_one.what), ..of_one });
+                }
+                Err(error) => return Err(self.refuse(&error)),
+            }
+        }
+        let History { solution, residual } = found;
+        let solved = self.solved(Ok(solution), started)?;
+        let failure = solved.failure.or(failure);
+        Ok(Solved { residual: Some(residual), path, failure, ..solved })
     }
 
     /// The problem as a row of a sweep, with `kernel`, which is the kernel of this problem.
@@ -171,7 +231,9 @@ impl<'a> ProblemSetup<'a> {
     pub(crate) fn cost(&self, plan: &Plan<'_>) -> Cost {
         let cost = plan.cost();
         // Loads of 0 take nothing.
-        let n_loads = self.contact.history.iter().filter(|load| **load > 0.0).count().max(1) as f64;
+        let one = self.contact.keys.history_steps.map(|_| self.contact.loads_of_history());
+        let loads = self.contact.history.iter().chain(one.iter().flatten());
+        let n_loads = loads.filter(|load| **load > 0.0).count().max(1) as f64;
         let cost = Cost { cpu_seconds: cost.cpu_seconds.map(|seconds| n_loads * seconds), ..cost };
         if !self.contact.keys.leakage {
             return cost;
@@ -248,7 +310,9 @@ impl<'a> ProblemSetup<'a> {
             }
             None => (None, failure),
         };
-        Solved { problem: self, solution, failure, residual: None, flow, shear: None, warnings: self.warnings(), wall }
+        let warnings = self.warnings();
+        let (residual, path, fluid, shear) = (None, None, None, None);
+        Solved { problem: self, solution, failure, residual, path, fluid, flow, shear, warnings, wall }
     }
 
     /// The solver's refusal in SI units.
@@ -261,8 +325,8 @@ impl<'a> Solved<'a> {
     /// The parts of the solution, without the problem.
     #[must_use]
     pub fn into_parts(self) -> SolvedParts<'a> {
-        let Self { solution, failure, residual, flow, shear, warnings, wall, .. } = self;
-        SolvedParts { solution, failure, residual, flow, shear, warnings, wall }
+        let Self { solution, failure, residual, path, fluid, flow, shear, warnings, wall, .. } = self;
+        SolvedParts { solution, failure, residual, path, fluid, flow, shear, warnings, wall }
     }
 
     /// Number of warnings that were known before the solve.
@@ -315,7 +379,8 @@ impl<'a> Solved<'a> {
         let (flow, shear) = (self.flow.as_ref(), self.shear.as_ref());
         let (warnings, origin) = (&self.warnings[..], surface.origin.as_ref());
         let (surface, solution, residual) = (&surface.keys, &self.solution, self.residual.as_ref());
-        ResultFiles { surface, map, waves, contact, solution, residual, flow, shear, warnings, origin }
+        let (path, fluid) = (self.path, self.fluid.as_ref());
+        ResultFiles { surface, map, waves, contact, solution, residual, path, fluid, flow, shear, warnings, origin }
     }
 }
 

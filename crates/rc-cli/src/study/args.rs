@@ -38,11 +38,13 @@ pub(crate) struct StudyArgs {
 
 /// Hides the keys that a study has other flags for, and those of surfaces that are no map.
 fn without_loads(arg: Arg) -> Arg {
-    const HIDDEN: [&str; 13] = [
+    const HIDDEN: [&str; 15] = [
         "pressure",
         "penetration",
         "force",
         "history",
+        "history_steps",
+        "fluid_pressure",
         "area_error",
         "output_grid",
         "border_level",

@@ -19,6 +19,8 @@ use crate::scene::values::Fraction;
 #[command(mut_arg("out", |out| out.help("Folder for the rows and the table; must be given")))]
 #[command(mut_arg("area_error", |refused| refused.hide(true)))]
 #[command(mut_arg("history", |refused| refused.hide(true)))]
+#[command(mut_arg("history_steps", |refused| refused.hide(true)))]
+#[command(mut_arg("fluid_pressure", |refused| refused.hide(true)))]
 #[command(mut_args(without_shear))]
 #[command(mut_arg("speed", |one| one.hide_short_help(true)))]
 pub(crate) struct SweepArgs {

@@ -103,6 +103,10 @@ impl Variation {
 
     /// The scene with this value, and the value in SI units.
     fn with(&self, value: &toml::Value, scene: &Scene) -> Result<(Value, Scene), CliError> {
+        // JSON has no such number.
+        if let Some(number) = value.as_float().filter(|number| !number.is_finite()) {
+            return Err(self.refused(format_args!("must be finite, not {number}")));
+        }
         let table = Table::from_iter([(self.key.clone(), value.clone())]);
         let upper =
             file::from_table(&table).map_err(|error| CliError::input(format_args!("{}: {error}", self.flag)))?;

@@ -48,6 +48,11 @@ fn a_jump_distance_is_positive() {
     for jump in ["0", "-1e-7", "nan"] {
         assert_refused(&place.run(&small("1e5", &["--jump-distance", jump])), "jump_distance: must be positive");
     }
+    let tiny = place.run(&small("1e5", &["--jump-distance", "1e-320"]));
+    assert_refused(&tiny, "jump_distance: must be from 1e-30 to 1e30 (m)");
+    let vary =
+        ["sweep", "--waves", "8", "--grid", "64", "--pressure", "1e5", "--vary", "jump_distance=nan", "--out", "s"];
+    assert_refused(&place.run(&vary), "vary: jump_distance: must be finite, not NaN");
     assert_solved(&place.run(&small("1e5", &["--out", "r"])));
     assert!(place.json("r/summary.json").get("mean_inverse_gap").is_none());
 }

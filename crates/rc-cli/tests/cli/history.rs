@@ -66,6 +66,69 @@ fn only_the_plastic_part_of_a_map_is_changed() {
 }
 
 #[test]
+fn steps_of_a_history_say_what_the_path_changes() {
+    let place = Place::new();
+    let steps = ["--history", "10MPa,0", "--history-steps", "10"];
+    assert_solved(&place.run(&steep(&[&steps[..], &["--out", "steps"]].concat())));
+    assert_solved(&place.run(&steep(&["--history", "10MPa,0", "--out", "one"])));
+    let tenths = "1MPa,2MPa,3MPa,4MPa,5MPa,6MPa,7MPa,8MPa,9MPa,10MPa,0";
+    assert_solved(&place.run(&steep(&["--history", tenths, "--out", "list"])));
+    let [steps, one, list] = ["steps", "one", "list"].map(|folder| place.json(&format!("{folder}/summary.json")));
+    let difference = &steps["path_difference"];
+    assert_eq!(difference["steps"], 10);
+    for key in ["area_fraction", "residual_rms_height"] {
+        let of = |summary: &serde_json::Value| summary[key].as_f64().expect("a number");
+        // The list has the same loads, up to rounding of the units.
+        assert!((of(&steps) / of(&list) - 1.0).abs() < 1e-4, "{key}: {} by a list", of(&list));
+        let expected = of(&steps) / of(&one) - 1.0;
+        let found = difference[key].as_f64().expect("a number");
+        assert!((found - expected).abs() < 1e-9 && found.abs() < 0.1, "{key}: {found} for {expected}");
+    }
+    assert!(difference["removed_volume"].as_f64().is_some_and(|volume| volume != 0.0), "{difference}");
+    assert!(one.get("path_difference").is_none());
+    assert_refused(&place.run(&steep(&["--pressure", "1e7", "--history-steps", "10"])), "history_steps: a single load");
+    assert_refused(&place.run(&steep(&["--history", "1e7", "--history-steps", "0"])), "history_steps: must be from 1");
+}
+
+#[test]
+fn the_page_of_a_history_shows_the_surface_that_flow_has_left() {
+    let place = Place::new();
+    assert_solved(&place.run(&steep(&["--history", "10MPa,0", "--out", "hist"])));
+    assert_solved(&place.run(&["report", "hist", "--quiet"]));
+    let page = text(&place.bytes("hist/report.html"));
+    let start = page.find("{\"title\"").expect("the data of the page");
+    let data = serde_json::Deserializer::from_str(&page[start..]).into_iter::<serde_json::Value>().next();
+    let surface = &data.expect("data").expect("JSON")["surface"];
+    assert_eq!(surface["is_left"], true);
+    let residual = values(&place.bytes("hist/residual.npy"));
+    let lowest = residual.iter().copied().fold(f64::INFINITY, f64::min);
+    assert!((surface["lowest"].as_f64().expect("a number") / lowest - 1.0).abs() < 1e-9, "{}", surface["lowest"]);
+    // Where the section is in contact, both surfaces are in one place.
+    let section = &surface["sections"][0];
+    let points =
+        section["points"].as_array().expect("points").iter().zip(section["contact"].as_array().expect("flags"));
+    let touching: Vec<_> = points.filter(|(_, touches)| **touches == true).map(|(point, _)| point).collect();
+    assert!(!touching.is_empty() && touching.iter().all(|point| point[1] == point[2]), "{touching:?}");
+    // The elastic surface of a flat summit is flat: the highest points of the section are within the summit's curvature.
+    let summary = place.json("hist/summary.json");
+    let rms = summary["residual_rms_height"].as_f64().expect("a number");
+    let told = surface["lines"].to_string();
+    assert!(told.contains(&format!("{:.3}", rms * 1e6)[..4]), "{rms} is not in {told}");
+}
+
+#[test]
+fn the_bar_of_the_plastic_area_at_a_reload_contains_zero() {
+    let place = Place::new();
+    for (loads, is_again) in [("10MPa,0,10MPa", true), ("5MPa,10MPa", false)] {
+        assert_solved(&place.run(&steep(&["--history", loads, "--out", "hist"])));
+        let summary = place.json("hist/summary.json");
+        let [area, bar] = ["plastic_area_fraction", "plastic_area_fraction_error"]
+            .map(|key| summary[key].as_f64().expect("a number"));
+        assert!(area > 0.0 && (bar >= area) == is_again, "{loads}: {area} ± {bar}");
+    }
+}
+
+#[test]
 fn a_history_that_cannot_be_solved_is_refused_in_one_line() {
     let place = Place::new();
     let cases = [

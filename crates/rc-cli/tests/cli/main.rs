@@ -4,6 +4,7 @@ mod adaptive;
 mod bad_input;
 mod curves;
 mod export;
+mod fluid;
 mod gas;
 mod guide;
 mod hardness;

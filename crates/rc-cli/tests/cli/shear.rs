@@ -114,6 +114,8 @@ fn a_shear_that_cannot_be_is_refused_with_its_key() {
             "--friction 0.4 --shear-pressure 1kPa --speed 1 --glassy-ratio 9 --relaxation-time 1",
             "cannot be combined with a sliding surface",
         ),
+        ("--friction 0.4 --shear-pressure 1e-9", "shear_pressure: 1e-9 Pa cannot be told from no shear"),
+        ("--friction 0.4 --shear-displacement 1e-30", "shear_displacement: 1e-30 m cannot be told from no shear"),
         ("--friction 0.4 --shear-pressure 1kPa --dry-run", "cannot be combined with a dry run"),
     ] {
         assert_refused(&solve(more), expected);
@@ -126,7 +128,74 @@ fn a_shear_that_cannot_be_is_refused_with_its_key() {
         let output = solve(&format!("--friction 0.4 --shear-pressure 1kPa {more}"));
         assert_solved(&output);
         assert!(text(&output.stderr).contains(expected), "{}", text(&output.stderr));
+        let output = solve(&format!("--friction 0.4 --shear-pressure 1kPa --json {more}"));
+        let summary: Value = serde_json::from_str(&text(&output.stdout)).expect("a summary");
+        assert!(summary["shear_note"].as_str().is_some_and(|note| note.contains(expected)), "{summary}");
     }
+    let exact = solve("--friction 0.4 --shear-pressure 1kPa --json");
+    let summary: Value = serde_json::from_str(&text(&exact.stdout)).expect("a summary");
+    assert!(summary.get("shear_note").is_none(), "{summary}");
+}
+
+#[test]
+fn tractions_are_compared_with_units_and_exported() {
+    let place = Place::new();
+    for (name, shear) in [("a", "2kPa"), ("b", "4kPa")] {
+        let words =
+            format!("solve {RUBBER} --pressure 20kPa --friction 0.4 --shear-pressure {shear} --quiet --out {name}");
+        assert_solved(&run(&place, &words));
+    }
+    let told = run(&place, "compare a b");
+    assert_solved(&told);
+    let told = text(&told.stdout);
+    for (key, unit) in [("shear pressure", "Pa"), ("shear force", "N"), ("shear displacement", "m"), ("slip work", "J")]
+    {
+        let line =
+            told.lines().find(|line| line.trim_start().starts_with(key)).unwrap_or_else(|| panic!("no {key}: {told}"));
+        assert!(line.contains(unit), "{line}");
+    }
+    assert_solved(&run(&place, "export a --vtk --zarr --quiet"));
+    let names = ["shear_x", "shear_y", "slip"];
+    let fields = String::from_utf8_lossy(&place.bytes("a/fields.vti")).into_owned();
+    for name in names {
+        assert!(fields.contains(&format!("Name=\"{name}\"")), "fields.vti has no {name}");
+        let attributes = place.json(&format!("a/fields.zarr/{name}/.zattrs"));
+        assert!(attributes["units"].as_str().is_some_and(|unit| unit != "m2"), "{name}: {attributes}");
+    }
+}
+
+#[test]
+fn several_surfaces_have_a_mean_shear_curve_with_its_spread() {
+    let place = Place::new();
+    let sweep = format!("sweep {RUBBER} --pressures 1e4:1e5:5 --seeds 1..3 --quiet --out s");
+    assert_solved(&run(&place, &sweep));
+    let told = run(&place, "shear s --friction 0.4 --out shear");
+    assert_solved(&told);
+    assert!(text(&told.stdout).contains("mean of 3 surfaces"), "{}", text(&told.stdout));
+    let record = place.json("shear/shear.json");
+    let curves = record["curves"].as_array().expect("curves");
+    let mean = &record["means"][0];
+    assert_eq!((curves.len(), mean["surfaces"].as_u64()), (3, Some(3)));
+    for key in ["shear_displacement", "slip_area_fraction", "loss_per_cycle"] {
+        let values = curves.iter().map(|curve| number(&curve["points"][50], key));
+        let expected = values.clone().sum::<f64>() / 3.0;
+        let spread = (values.map(|value| (value - expected).powi(2)).sum::<f64>() / 2.0).sqrt();
+        let point = &mean["points"][50];
+        let found = [number(point, key), number(point, &format!("{key}_spread"))];
+        assert!(
+            (found[0] / expected - 1.0).abs() < 1e-12 && (found[1] / spread - 1.0).abs() < 1e-9,
+            "{key}: {found:?}"
+        );
+    }
+    let table = text(&place.bytes("shear/shear_mean.csv"));
+    let header = "scene,surfaces,mean_pressure,shear_pressure,shear_displacement,shear_displacement_spread";
+    assert!(table.starts_with(header), "{}", &table[..200]);
+    assert_eq!(table.lines().count(), 1 + mean["points"].as_array().expect("points").len());
+    assert_solved(&run(&place, "report shear --quiet"));
+    // One surface has no mean.
+    assert_solved(&run(&place, &format!("sweep {RUBBER} --pressures 1e4:1e5:5 --quiet --out one")));
+    assert_solved(&run(&place, "shear one --friction 0.4 --quiet --out shear"));
+    assert!(!place.names("shear").contains(&"shear_mean.csv".to_owned()));
 }
 
 /// A table with loads and penetrations of σ0 ∝ exp(Δ/u0), u0 = 1 µm.

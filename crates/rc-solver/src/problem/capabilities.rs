@@ -41,6 +41,8 @@ pub enum Feature {
     Hardness,
     /// Several loads one after the other, with the plastic flow of each.
     History,
+    /// The pressure of a fluid, which that of the contact exceeds.
+    FluidPressure,
     /// A flat surface.
     Flat,
     /// Heights that are known only on a grid.
@@ -80,9 +82,9 @@ pub enum Feature {
 }
 
 use Feature::{
-    AreaError, BorderLevel, Checkpoint, Coating, DryRun, Flat, FreeBorders, Gradient, Hardness, HeightMap, History,
-    KernelFunction, LagOnGrid, Layer, Leakage, Line, OblongElements, OblongGrid, OtherSolid, OwnKernel, OwnOperator,
-    Penetration, Ranks, Shear, Sliding, Spectral, Sweep, UnevenGrid, Watch,
+    AreaError, BorderLevel, Checkpoint, Coating, DryRun, Flat, FluidPressure, FreeBorders, Gradient, Hardness,
+    HeightMap, History, KernelFunction, LagOnGrid, Layer, Leakage, Line, OblongElements, OblongGrid, OtherSolid,
+    OwnKernel, OwnOperator, Penetration, Ranks, Shear, Sliding, Spectral, Sweep, UnevenGrid, Watch,
 };
 
 /// Why a method does not take a feature; `None` if it does.
@@ -111,7 +113,7 @@ const DIVIDED: Not = Some("only the adaptive method runs on several ranks");
 const TANGENTIAL: &str = "its response to tangential tractions is not known";
 
 /// The rows of the table.
-const ROWS: [Row; 29] = [
+const ROWS: [Row; 30] = [
     (Spectral, "kernel", "the kernel spectral", [SPECTRAL, None, OF_LOVE]),
     (OwnKernel, "kernel", "a kernel without a split by scale", [NO_FORM, None, OF_LOVE]),
     (OtherSolid, "kernel", "another solid with a split by scale", [None, None, OF_LOVE]),
@@ -123,6 +125,7 @@ const ROWS: [Row; 29] = [
     (Penetration, "penetration", "a given penetration", ALL),
     (Hardness, "hardness", "a hardness", [None, None, Some("its pressures have no upper bound")]),
     (History, "history", "a history of loads", [None, None, Some("its pressures have no upper bound")]),
+    (FluidPressure, "fluid_pressure", "the pressure of a fluid", ALL),
     (Flat, "heights", "a flat surface", [Some("a flat surface needs no adaptive mesh"), None, None]),
     (HeightMap, "heights", "a height map", ALL),
     (
@@ -149,7 +152,7 @@ const ROWS: [Row; 29] = [
 ];
 
 /// Features that exclude each other with every method. The message names the key of the first.
-const PAIRS: [(Feature, Feature, &str); 53] = [
+const PAIRS: [(Feature, Feature, &str); 62] = [
     (Spectral, FreeBorders, "its waves are periodic"),
     (FreeBorders, KernelFunction, "the function describes a periodic cell"),
     (FreeBorders, Layer, "the response of a layer is known in a periodic cell only"),
@@ -161,6 +164,19 @@ const PAIRS: [(Feature, Feature, &str); 53] = [
     (History, AreaError, "its loads follow each other on one grid (give grid instead)"),
     (History, Checkpoint, "it is of one load only"),
     (History, Sweep, "the rows of a sweep are independent of each other"),
+    (
+        FluidPressure,
+        Hardness,
+        "the pressure that the fluid leaves to the contact would be limited differently at each point",
+    ),
+    (FluidPressure, BorderLevel, "it is known on the elements of the grid only"),
+    (FluidPressure, AreaError, "it is known on one grid only (give grid instead)"),
+    (FluidPressure, Ranks, "it is not divided among ranks"),
+    (FluidPressure, Checkpoint, "the file would not notice another fluid"),
+    (FluidPressure, Sliding, "its viscous friction is not modelled"),
+    (FluidPressure, Shear, "friction under a fluid is not modelled"),
+    (FluidPressure, Gradient, "derivatives of the heights that it leaves are not known"),
+    (FluidPressure, Sweep, "it belongs to one surface and load"),
     (BorderLevel, HeightMap, "a map has no heights between its points (resample it on a finer grid instead)"),
     (BorderLevel, OblongGrid, "it divides square grids only"),
     (BorderLevel, UnevenGrid, "it needs a small number times a large power of 2, such as 1024 or 1536 elements"),

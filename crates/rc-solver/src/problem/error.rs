@@ -88,6 +88,42 @@ pub enum ProblemError {
         /// Mean pressure given, in E*.
         value: f64,
     },
+    /// The pressure of a fluid is on another grid than the heights.
+    #[error("the pressure of the fluid is on {given} elements, and the heights are on {grid}")]
+    FluidGrid {
+        /// Grid of the heights.
+        grid: Grid,
+        /// Grid of the pressure.
+        given: Grid,
+    },
+    /// The pressure of a fluid is negative, NaN or infinite.
+    #[error("the pressure of the fluid at element ({ix}, {iy}) is {value}; it must be finite and at least 0")]
+    FluidPressure {
+        /// Column.
+        ix: usize,
+        /// Row.
+        iy: usize,
+        /// The value, in E*.
+        value: f64,
+    },
+    /// The fluid bears the whole load, and nothing is left for a contact.
+    #[error("the mean pressure must be above that of the fluid, {fluid}, not {value} (in units of E*)")]
+    FluidBears {
+        /// Mean pressure given, in E*.
+        value: f64,
+        /// Mean pressure of the fluid, in E*.
+        fluid: f64,
+    },
+    /// The fluid keeps the bodies apart.
+    #[error(
+        "the penetration must be above {touching}, where the surfaces first touch under the fluid, not {value} (in units of the cell side)"
+    )]
+    FluidParts {
+        /// Penetration given, in λ.
+        value: f64,
+        /// Penetration of first touch, in λ.
+        touching: f64,
+    },
     /// The hardness is not positive.
     #[error("the hardness must be positive, not {value}")]
     Hardness {

@@ -49,6 +49,16 @@ impl Tolerance {
     }
 }
 
+impl From<ErrorBound> for Tolerance {
+    /// The tolerance with this bound on every grid.
+    fn from(bound: ErrorBound) -> Self {
+        match bound {
+            ErrorBound::Energy(value) => Self::Energy(value),
+            ErrorBound::Relative(value) => Self::Relative(value),
+        }
+    }
+}
+
 /// The bound that a certificate must meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ErrorBound {

@@ -6,7 +6,7 @@ use crate::descent::info::Status;
 use crate::problem::capabilities::{Feature, refusal};
 use crate::problem::control::Control;
 use crate::problem::tolerance::ErrorBound;
-use crate::shear::error::ShearError;
+use crate::shear::error::{SMALLEST_PART, ShearError};
 use crate::shear::operator::{self, TangentialOperator};
 use crate::shear::params::{ShearControl, ShearParams};
 use crate::shear::problem::{Contact, Prescribed};
@@ -169,6 +169,7 @@ fn smaller_load(normal: &Solution<'_>, params: &ShearParams, compliance_ratio: f
         ShearControl::MeanShear(shear) => {
             let limit = params.friction * info.mean_pressure;
             let left = info.mean_pressure - shear / params.friction;
+            check_part(shear, limit)?;
             if shear < limit && left > 0.0 {
                 Ok(Control::MeanPressure(left))
             } else {
@@ -181,6 +182,7 @@ fn smaller_load(normal: &Solution<'_>, params: &ShearParams, compliance_ratio: f
             let is_full = normal.status() == Status::FullContact;
             let depth = if is_full { info.penetration.min(info.penetration_full_contact) } else { info.penetration };
             let left = depth - displacement / per_depth;
+            check_part(displacement, per_depth * depth)?;
             if left > 0.0 {
                 Ok(Control::Penetration(left))
             } else {
@@ -188,6 +190,12 @@ fn smaller_load(normal: &Solution<'_>, params: &ShearParams, compliance_ratio: f
             }
         }
     }
+}
+
+/// Refuses a shear or displacement that rounding would hide beside the one at which the surface slides.
+fn check_part(value: f64, limit: f64) -> Result<(), ShearError> {
+    let least = SMALLEST_PART * limit;
+    if value >= least { Ok(()) } else { Err(ShearError::TooSmall { value, least }) }
 }
 
 /// The bound on the error of the tractions.

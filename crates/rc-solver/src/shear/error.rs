@@ -7,6 +7,11 @@ use crate::problem::capabilities::Refusal;
 use crate::shear::solution::ShearSolution;
 use crate::solve::error::SolveError;
 
+/// Smallest part of the shear or displacement of sliding that is solved.
+///
+/// The second normal contact is solved for the rest, of which this part must not be rounding.
+pub(super) const SMALLEST_PART: f64 = 1e-9;
+
 /// A sheared contact that was not solved.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -30,6 +35,14 @@ pub enum ShearError {
         displacement: f64,
         /// The displacement at which sliding begins, in λ.
         limit: f64,
+    },
+    /// The shear is too small beside that of sliding to be told from none.
+    #[error("the shear {value} must be at least {least}, which is {SMALLEST_PART:e} of that of sliding")]
+    TooSmall {
+        /// τ in E*, or d in λ.
+        value: f64,
+        /// The smallest that is solved, in the same unit.
+        least: f64,
     },
     /// A parameter is out of range.
     #[error("{name} must be {wanted}, not {value}")]

@@ -12,7 +12,6 @@ use rc_core::{Field, HeightSource, Observer};
 use crate::problem::capabilities::Feature;
 use crate::problem::contact_problem::ContactProblem;
 use crate::problem::control::Control;
-use crate::problem::tolerance::{ErrorBound, Tolerance};
 use crate::solution::whole::Solution;
 use crate::solve::error::SolveError;
 use crate::solve::features::{features, refusal_of};
@@ -74,7 +73,8 @@ impl<'a> ContactProblem<'a> {
         let plan = under(largest).plan(params)?;
         let (method, bound, reason) = (plan.method(), plan.bound(), plan.reason().clone());
         drop(plan);
-        let params = SolveParams { tolerance: tolerance(bound), method: Some(method), ..*params };
+        // That of a surface may depend on its waves, which the map after it does not know.
+        let params = SolveParams { tolerance: bound.into(), method: Some(method), ..*params };
         let (mut last, mut flow) = (None, None);
         for &load in loads.iter().filter(|load| **load > 0.0) {
             let heights = left(&self.heights, flow.as_ref());
@@ -101,15 +101,7 @@ fn left<'a>(heights: &HeightSource<'a>, flow: Option<&Field>) -> HeightSource<'a
 }
 
 /// `one` + `factor` `other`.
-fn combined(mut one: Field, other: &Field, factor: f64) -> Field {
+pub(super) fn combined(mut one: Field, other: &Field, factor: f64) -> Field {
     one.values_mut().par_iter_mut().zip(other.values()).for_each(|(a, b)| *a += factor * b);
     one
-}
-
-/// The tolerance with this bound. That of a surface may depend on its waves, which the map after it does not know.
-fn tolerance(bound: ErrorBound) -> Tolerance {
-    match bound {
-        ErrorBound::Relative(value) => Tolerance::Relative(value),
-        ErrorBound::Energy(value) => Tolerance::Energy(value),
-    }
 }

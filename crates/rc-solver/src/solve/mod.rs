@@ -6,6 +6,7 @@ pub(crate) mod cost;
 pub(crate) mod door;
 pub(crate) mod error;
 pub(crate) mod features;
+pub(crate) mod fluid;
 pub(crate) mod history;
 pub(crate) mod memory;
 pub(crate) mod params;

@@ -2,6 +2,7 @@
 
 mod capabilities;
 mod error_bars;
+mod fluid;
 mod gas;
 mod gauss_seidel;
 mod gradient;

@@ -169,6 +169,9 @@ fn what_slides_or_cannot_be_sheared_is_refused() {
     assert!(matches!(sliding, ShearError::Sliding { .. }), "{sliding}");
     let far = ShearParams { control: ShearControl::Displacement(1.0), ..shear(0.5, 0.0) };
     assert!(matches!(of(&far).expect_err("far"), ShearError::SlipsAll { .. }));
+    for tiny in [shear(1e-10, 0.0), ShearParams { control: ShearControl::Displacement(1e-30), ..shear(0.5, 0.5) }] {
+        assert!(matches!(of(&tiny).expect_err("tiny"), ShearError::TooSmall { .. }));
+    }
     for wrong in [
         ShearParams { friction: 0.0, ..shear(0.5, 0.0) },
         ShearParams { poisson: 0.6, ..shear(0.5, 0.0) },

@@ -54,7 +54,9 @@ impl ContactKeys {
     #[must_use]
     pub fn over(mut self, mut lower: Self) -> Self {
         if self.n_loads() > 0 {
-            (lower.pressure, lower.penetration, lower.force, lower.history) = (None, None, None, None);
+            (lower.pressure, lower.penetration, lower.force) = (None, None, None);
+            (lower.history, lower.history_steps) =
+                (None, if self.history.is_some() { lower.history_steps } else { None });
         }
         if self.e_star.is_some() {
             (lower.young, lower.poisson, lower.young2, lower.poisson2) = (None, None, None, None);
@@ -73,7 +75,7 @@ impl ContactKeys {
             (lower.tolerance, lower.energy_tolerance) = (None, None);
         }
         or_lower!(self, lower, {
-            young, poisson, young2, poisson2, e_star, pressure, penetration, force, hardness, history, speed, direction, prony, glassy_ratio, relaxation_time, fractional, friction, shear_pressure, shear_displacement, shear_angle, conductivity, jump_distance, kernel, boundary, layer_thickness, layer_poisson, substrate_young, substrate_poisson, method, border_level,
+            young, poisson, young2, poisson2, e_star, pressure, penetration, force, hardness, history, history_steps, fluid_pressure, speed, direction, prony, glassy_ratio, relaxation_time, fractional, friction, shear_pressure, shear_displacement, shear_angle, conductivity, jump_distance, kernel, boundary, layer_thickness, layer_poisson, substrate_young, substrate_poisson, method, border_level,
             energy_tolerance, tolerance, area_error, viscosity, pressure_drop, output_grid, precision
         });
         self.leakage |= lower.leakage;

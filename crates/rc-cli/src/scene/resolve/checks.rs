@@ -23,6 +23,20 @@ pub(super) fn positive(key: &str, unit: &str, value: Option<f64>) -> Result<f64,
     }
 }
 
+/// Magnitudes that no quantity of a contact has. Beyond them, results would overflow.
+const PLAUSIBLE: [f64; 2] = [1e-30, 1e30];
+
+/// [`positive`], for a value whose reciprocal or product becomes a result.
+pub(super) fn plausible(key: &str, unit: &str, value: f64) -> Result<f64, CliError> {
+    let [least, most] = PLAUSIBLE;
+    match positive(key, unit, Some(value))? {
+        value if (least..=most).contains(&value) => Ok(value),
+        value => {
+            Err(CliError::input(format_args!("{key}: must be from {least:e} to {most:e} ({unit}), not {value:e}")))
+        }
+    }
+}
+
 /// The error for a key that neither the user nor the example gives.
 ///
 /// It occurs only after an edit of the example.

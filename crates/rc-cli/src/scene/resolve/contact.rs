@@ -7,12 +7,13 @@ use rc_core::{Boundary, Elasticity, Kernel, PeriodicCell, UnitError, Units};
 use rc_kernel::{FreeLove, Layer, Love, LoveLayer, Spectral, SpectralLayer, Viscoelastic};
 use rc_solver::{Control, SolveParams, Tolerance};
 
-use super::checks::{missing, positive};
+use super::checks::{missing, plausible, positive};
 use super::shear::ShearSetup;
 use super::sliding::SlidingSolid;
 use super::{elastic_layer, shear, sliding};
 use crate::error::CliError;
 use crate::files::checkpoint::CheckpointFile;
+use crate::scene::fluid::FluidSource;
 use crate::scene::history::HistorySpec;
 use crate::scene::keys::{ContactKeys, KernelName};
 use crate::scene::values::ToleranceSpec;
@@ -31,6 +32,8 @@ pub struct ContactSetup {
     ///
     /// `control` is the last of them above 0.
     pub history: Vec<f64>,
+    /// The pressure of a fluid, if there is one.
+    pub fluid: Option<FluidSource>,
     /// Discretisation.
     pub kernel: KernelName,
     /// The boundary, which is what is beyond the heights.
@@ -63,6 +66,17 @@ pub struct Place {
 }
 
 impl ContactSetup {
+    /// Whether the last load of the history above 0 is none that the surface bears for the first time.
+    pub(crate) fn is_reloaded(&self) -> bool {
+        let loads: Vec<f64> = self.history.iter().copied().filter(|load| *load > 0.0).collect();
+        loads.split_last().is_some_and(|(last, before)| before.iter().any(|load| load >= last))
+    }
+
+    /// The loads (E*) of the history without steps between them.
+    pub(crate) fn loads_of_history(&self) -> Vec<f64> {
+        loads_of_history(&self.keys, self.units)
+    }
+
     /// The kernel of the contact.
     ///
     /// # Errors
@@ -119,8 +133,9 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
     let units = Units::new(cell, elasticity(&keys)?);
     let control = control(&keys, units)?;
     let hardness = hardness(&keys, (control, units))?;
-    keys.jump_distance.map_or(Ok(0.0), |jump| positive("jump_distance", "m", Some(jump)))?;
-    let history = keys.history.iter().flat_map(|HistorySpec(loads)| loads).map(|load| units.pressure(*load)).collect();
+    keys.jump_distance.map_or(Ok(0.0), |jump| plausible("jump_distance", "m", jump))?;
+    keys.conductivity.map_or(Ok(0.0), |given| plausible("conductivity", "W/(m K) or S/m", given.mean()))?;
+    let history = in_steps(loads_of_history(&keys, units), &keys)?;
     let kernel = keys.kernel.unwrap_or(KernelName::Love);
     features::check(&keys, None)?;
     let boundary = keys.boundary.unwrap_or_default();
@@ -139,6 +154,7 @@ pub fn contact(keys: ContactKeys, cell: PeriodicCell) -> Result<ContactSetup, Cl
         control,
         hardness,
         history,
+        fluid: keys.fluid_pressure.clone().map(FluidSource::File),
         kernel,
         boundary,
         layer,
@@ -165,6 +181,33 @@ fn control(keys: &ContactKeys, units: Units) -> Result<Control, CliError> {
         }
         _ => Err(CliError::input("give exactly one of pressure (Pa), penetration (m) and force (N)")),
     }
+}
+
+/// The loads (E*) of a history, as they were given.
+fn loads_of_history(keys: &ContactKeys, units: Units) -> Vec<f64> {
+    keys.history.iter().flat_map(|HistorySpec(loads)| loads).map(|load| units.pressure(*load)).collect()
+}
+
+/// Largest number of steps to each load of a history.
+const MOST_STEPS: usize = 1000;
+
+/// The loads of a history, with each that is above the one before it in as many steps as the keys say.
+fn in_steps(loads: Vec<f64>, keys: &ContactKeys) -> Result<Vec<f64>, CliError> {
+    let Some(steps) = keys.history_steps else { return Ok(loads) };
+    if loads.is_empty() {
+        return Err(CliError::input("history_steps: a single load has no history; give history too, or omit it"));
+    }
+    if !(1..=MOST_STEPS).contains(&steps) {
+        return Err(CliError::input(format_args!("history_steps: must be from 1 to {MOST_STEPS}, not {steps}")));
+    }
+    let mut before = 0.0;
+    let stepped = loads.into_iter().flat_map(|load| {
+        let from = std::mem::replace(&mut before, load);
+        let n = if load > from { steps } else { 1 };
+        // The last step is the load itself, without rounding.
+        (1..n).map(move |i| from + (load - from) * i as f64 / n as f64).chain(std::iter::once(load))
+    });
+    Ok(stepped.collect())
 }
 
 /// The last load (Pa) of a history that is above 0.
@@ -199,8 +242,8 @@ fn film(keys: ContactKeys) -> Result<ContactKeys, CliError> {
     match (keys.viscosity, keys.pressure_drop) {
         (None, None) => Ok(keys),
         (Some(viscosity), Some(drop)) => {
-            positive("viscosity", "Pa s", Some(viscosity))?;
-            positive("pressure_drop", "Pa", Some(drop))?;
+            plausible("viscosity", "Pa s", viscosity)?;
+            plausible("pressure_drop", "Pa", drop)?;
             Ok(ContactKeys { leakage: true, ..keys })
         }
         (Some(_), None) => Err(CliError::input("viscosity: the flow in m³/s also needs pressure_drop (Pa); give both")),
@@ -324,6 +367,10 @@ mod tests {
             ("hardness = 0.0", "hardness"),
             ("jump_distance = 0.0", "jump_distance"),
             ("jump_distance = nan", "jump_distance"),
+            ("jump_distance = 1e-320", "jump_distance"),
+            ("conductivity = \"1e308,1e308\"", "conductivity"),
+            ("viscosity = 1e-320\npressure_drop = 1e5", "viscosity"),
+            ("viscosity = 1e-3\npressure_drop = 1e300", "pressure_drop"),
             ("hardness = nan", "hardness"),
             ("hardness = inf", "hardness"),
             ("hardness = 1.0", "hardness"),
@@ -369,6 +416,9 @@ mod tests {
             ("speed = 1.0\nfractional = \"0.0,10,1\"", "fractional"),
             ("speed = 1.0\nfractional = { alpha = 0.2, glassy_ratio = 0.5, tau = 1.0 }", "fractional"),
             ("speed = -1.0\nprony = [[1.0, 1.0]]", "speed"),
+            ("speed = 1e300\nprony = [[1.0, 1.0]]", "speed"),
+            ("speed = 1.0\nprony = [[1.0, 1e300]]", "prony"),
+            ("speed = 1.0\nglassy_ratio = 10.0\nrelaxation_time = 1e300", "relaxation_time"),
             ("speed = inf\nprony = [[1.0, 1.0]]", "speed"),
             ("speed = 1.0\nprony = [[1.0, 1.0]]\ndirection = nan", "direction"),
             ("speed = 1.0\nprony = [[1.0, 1.0]]\nboundary = \"free\"", "speed"),

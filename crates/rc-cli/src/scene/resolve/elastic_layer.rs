@@ -1,5 +1,6 @@
 //! The keys of an elastic layer and its substrate.
 
+use rc_core::quantity::engineering;
 use rc_core::{Elasticity, Grid, Units};
 use rc_kernel::{Layer, Substrate, THINNEST_LAYER};
 
@@ -29,6 +30,18 @@ fn check_ratio(poisson: f64) -> Result<(), CliError> {
     } else {
         Err(CliError::input(format_args!("layer_poisson: must be above -1 and at most 0.5, not {poisson}")))
     }
+}
+
+/// The layer or coating of these keys in words; `None` for a half-space.
+pub(crate) fn in_words(keys: &ContactKeys) -> Option<String> {
+    let thickness = engineering(keys.layer_thickness?, "m");
+    let ratio = keys.layer_poisson.or(keys.poisson).map_or_else(String::new, |nu| format!(" (ν = {nu})"));
+    Some(match keys.substrate_young.zip(keys.substrate_poisson) {
+        Some((young, nu)) => {
+            format!("coating of {thickness}{ratio} on an elastic substrate, E = {}, ν = {nu}", engineering(young, "Pa"))
+        }
+        None => format!("layer of {thickness}{ratio} on a rigid base"),
+    })
 }
 
 /// The layer in units of the cell side and its own E*; `None` for a half-space.

@@ -4,7 +4,7 @@
 
 mod checks;
 mod contact;
-mod elastic_layer;
+pub(crate) mod elastic_layer;
 mod form;
 mod layers;
 mod like;

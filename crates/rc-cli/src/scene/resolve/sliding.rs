@@ -154,8 +154,34 @@ fn check_speed(speed: f64) -> Result<(), CliError> {
         speed if speed < 0.0 => Err(CliError::input(format_args!(
             "speed: must be at least 0 (m/s), not {speed}; for the other way give --direction 180"
         ))),
-        speed if speed.is_finite() => Ok(()),
+        speed if speed <= MAX_SPEED => Ok(()),
+        speed if speed.is_finite() => {
+            Err(CliError::input(format_args!("speed: must be at most {MAX_SPEED:e} (m/s), not {speed:e}")))
+        }
         speed => Err(CliError::input(format_args!("speed: must be a finite speed (m/s), not {speed}"))),
+    }
+}
+
+/// The speed of light, about.
+const MAX_SPEED: f64 = 3e8;
+
+/// Relaxation times (s) with which no result underflows or overflows.
+const TIMES: [f64; 2] = [1e-30, 1e30];
+
+/// Refuses times (s) of a material that are beyond all that is measured.
+fn check_times(key: &str, keys: &ContactKeys) -> Result<(), CliError> {
+    let of_terms = match &keys.prony {
+        Some(PronySpec::Terms(terms)) => terms.iter().map(|term| term[1]).collect(),
+        _ => Vec::new(),
+    };
+    let of_fractional = keys.fractional.map(|solid| solid.tau);
+    let mut times = of_terms.into_iter().chain(of_fractional).chain(keys.relaxation_time);
+    match times.find(|time| !(TIMES[0]..=TIMES[1]).contains(time)) {
+        None => Ok(()),
+        Some(time) => Err(CliError::input(format_args!(
+            "{key}: relaxation times must be from {:e} to {:e} s, not {time:e}",
+            TIMES[0], TIMES[1]
+        ))),
     }
 }
 
@@ -193,6 +219,7 @@ fn material(keys: &ContactKeys) -> Result<Option<(&'static str, Relaxation)>, Cl
             if matches!(cause, MaterialError::Time { .. }) && key == "glassy_ratio" { "relaxation_time" } else { key };
         CliError::input(format_args!("{key}: {cause}"))
     })?;
+    check_times(if key == "glassy_ratio" { "relaxation_time" } else { key }, keys)?;
     if material.glassy_ratio() > MAX_GLASSY_RATIO {
         return Err(CliError::input(format_args!(
             "{key}: the glassy modulus is {:.1e} times the relaxed one; give a series relative to the relaxed modulus, at most {MAX_GLASSY_RATIO:e}",
