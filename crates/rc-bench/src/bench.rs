@@ -35,7 +35,6 @@ pub use counts::{accept, check};
 pub use documents::check as check_documents;
 pub use make_reference::run as make_reference;
 pub use scenes::Scene;
-pub use steps::measure as measure_steps;
 
 use peers::{ASPHER, PEERS, PeerKind};
 use picture::TimeAgainstError;
@@ -138,6 +137,15 @@ pub fn measure_scale(params: &Params, quick: bool) -> Result<()> {
         documents::update()?;
     }
     Ok(())
+}
+
+/// Measures, prints and, if `archive`, archives where the time of solves goes.
+///
+/// # Errors
+/// When a solve fails, or a file cannot be written.
+pub fn measure_steps(archive: bool) -> Result<()> {
+    steps::measure(archive)?;
+    if archive { documents::update() } else { Ok(()) }
 }
 
 /// Name and version of each peer that started.

@@ -44,7 +44,7 @@ pub(super) struct StepRow {
     memory_seconds: Option<f64>,
 }
 
-/// Measures, prints and, if `archive`, saves the steps of all cases and updates the documents.
+/// Measures and prints the steps of all cases. With `archive`, it saves them for the documents.
 ///
 /// # Errors
 /// When a solve fails or a file cannot be written.
@@ -59,7 +59,6 @@ pub fn measure(archive: bool) -> Result<()> {
     println!("Memory passes {:.1} GB/s, with all threads.", 1e-9 * bandwidth);
     if archive {
         write(&repository::root().join(STEPS), &to_csv(&rows)?)?;
-        super::update_documents()?;
     }
     Ok(())
 }

@@ -7,6 +7,7 @@ mod checked;
 mod dry_run;
 mod failure;
 mod flow_files;
+mod fluid;
 mod job;
 pub(crate) mod leakage;
 mod map_file;
@@ -20,12 +21,13 @@ mod sliding_note;
 
 pub use checked::CheckedScene;
 pub use failure::Failure;
+pub use fluid::SolvedFluid;
 pub use leakage::SolvedFlow;
 pub(crate) use leakage::memory_factor;
 pub use over_ranks::main_over_ranks;
 pub use result_files::{MapHeights, ResultFiles};
 pub use shear::SolvedShear;
-pub use solved::{ProblemSetup, Solved, SolvedFluid, SolvedParts};
+pub use solved::{ProblemSetup, Solved, SolvedParts};
 
 use std::path::PathBuf;
 

@@ -13,10 +13,10 @@ use rc_solver::{ContactElement, Solution, Status};
 use rc_sweep::files::{FileError, Staged};
 use rc_sweep::{MapOrigin, PathDifference, SecondBody, SolveContext, Summary, Warning};
 
+use super::fluid::SolvedFluid;
 use super::leakage::SolvedFlow;
 use super::map_file::MapFile;
 use super::shear::SolvedShear;
-use super::solved::SolvedFluid;
 use super::{flow_files, shared_fields, shear};
 use crate::error::CliError;
 use crate::files::kind::Kind;

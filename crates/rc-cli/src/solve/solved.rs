@@ -5,11 +5,12 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rc_core::{Boundary, Field, HeightSource, Kernel, Observer};
-use rc_solver::{ContactProblem, Cost, FluidProblem, History, Plan, Solution, SolveError, SolveParams, UnderFluid};
+use rc_solver::{ContactProblem, Cost, FluidProblem, History, Plan, Solution, SolveError, SolveParams};
 use rc_sweep::memory::Budget;
 use rc_sweep::{PathDifference, RowProblem, SolvedRow, Summary, Warning};
 
 use super::failure::Failure;
+use super::fluid::SolvedFluid;
 use super::leakage::{self, SolvedFlow};
 use super::messages;
 use super::path;
@@ -77,15 +78,6 @@ pub struct SolvedParts<'a> {
     pub warnings: Vec<Warning>,
     /// Time to the certified solution.
     pub wall: Duration,
-}
-
-/// A fluid that presses on the surfaces of a solved contact.
-#[derive(Clone, Debug)]
-pub struct SolvedFluid {
-    /// Its pressure (Pa), as it was given.
-    pub pressure: Field,
-    /// The results of fluid and contact together.
-    pub both: UnderFluid,
 }
 
 /// A problem under a fluid, with the pressure of the fluid (Pa).

@@ -127,8 +127,8 @@ impl ConjugateDirections {
         if let Some(operator) = operator {
             operator.precondition(&self.active, &mut self.preconditioned);
         }
-        let len = layout.len();
-        let blocks = self.displacement.chunks(len).zip(self.active.chunks(len)).zip(self.preconditioned.chunks(len));
+        let blocks = layout.chunks(&self.displacement).zip(layout.chunks(&self.active));
+        let blocks = blocks.zip(layout.chunks(&self.preconditioned));
         let sums = parallel::map(blocks, |((displacement, active), preconditioned)| {
             rows::sums_of_preconditioned(preconditioned, displacement, active)
         });
@@ -145,15 +145,18 @@ impl ConjugateDirections {
         slope: &Slope<'_>,
     ) -> DirectionSums {
         let _running = Step::Directions.begin();
-        let (len, factors) = (layout.len(), [beta as f32, shift as f32]);
-        let blocks = self.preconditioned.chunks(len).zip(self.active.chunks(len)).zip(self.direction.chunks_mut(len));
+        let factors = [beta as f32, shift as f32];
+        let blocks = layout.chunks(&self.preconditioned).zip(layout.chunks(&self.active));
+        let blocks = blocks.zip(layout.chunks_mut(&mut self.direction));
         write_blocks(operator, blocks, |((preconditioned, active), direction), written| {
             rows::next_direction(preconditioned, factors, active, direction, written);
         });
         operator.apply();
-        let blocks = self.direction.chunks(len).zip(self.active.chunks(len)).zip(self.displacement.chunks_mut(len));
-        let sums = read_blocks(operator, blocks.enumerate(), |(i, ((direction, active), kept)), read| {
-            let here = i * len..i * len + direction.len();
+        let ranges = layout.ranges(self.direction.len());
+        let blocks = ranges.zip(layout.chunks_mut(&mut self.displacement));
+        let (direction, active) = (&self.direction, &self.active);
+        let sums = read_blocks(operator, blocks, |(here, kept), read| {
+            let (direction, active) = (&direction[here.clone()], &active[here.clone()]);
             match slope {
                 Slope::Gap { gap, zero_gap } => {
                     let gradient = gap[here].iter().map(|g| g - zero_gap);

@@ -14,6 +14,8 @@ use crate::parallel;
 #[derive(Clone, Debug)]
 pub(crate) struct BlockLayout {
     len: usize,
+    /// Ends of blocks that are shorter. `None` if only the last one is.
+    ends: Option<Arc<[usize]>>,
     /// Area of an element of each block, in units of the smallest. Empty when all have that size.
     areas: Arc<[f64]>,
     places: Places,
@@ -39,7 +41,7 @@ const RUN: usize = 8;
 impl BlockLayout {
     /// Blocks of elements of one size in unknown places.
     pub(crate) fn of(len: usize) -> Self {
-        Self { len, areas: Arc::default(), places: Places::Anywhere, ranks: Ranks::alone() }
+        Self { len, ends: None, areas: Arc::default(), places: Places::Anywhere, ranks: Ranks::alone() }
     }
 
     /// Blocks of whole rows of a grid of `nx` × `ny` elements.
@@ -59,6 +61,11 @@ impl BlockLayout {
     pub(crate) fn with_runs(self, run: usize, centres: Vec<[f32; 2]>, sides: [usize; 2]) -> Self {
         debug_assert!(self.len.is_multiple_of(run), "blocks of whole runs");
         Self { places: Places::Runs { run, centres: centres.into(), sides }, ..self }
+    }
+
+    /// Ends blocks earlier: at these indices of values, if there are any.
+    pub(crate) fn with_ends(self, ends: Option<Arc<[usize]>>) -> Self {
+        Self { ends, ..self }
     }
 
     /// Deals the blocks among these ranks.
@@ -97,7 +104,7 @@ impl BlockLayout {
                 }
             }
             Places::Runs { run, centres, .. } => {
-                let centres = &centres[i * (self.len / run)..];
+                let centres = &centres[self.range(i, usize::MAX).start / run..];
                 for (first, centre) in (0..n).step_by(*run).zip(centres) {
                     take(first..(first + run).min(n), centre.map(f64::from));
                 }
@@ -105,9 +112,34 @@ impl BlockLayout {
         }
     }
 
-    /// Number of values in a block.
+    /// Number of values in a block that is not shorter than the others.
     pub(crate) fn len(&self) -> usize {
+        debug_assert!(self.ends.is_none(), "blocks of one length");
         self.len
+    }
+
+    /// The range of block `i` of a vector of `n` values.
+    pub(crate) fn range(&self, i: usize, n: usize) -> Range<usize> {
+        match &self.ends {
+            Some(ends) => i.checked_sub(1).map_or(0, |before| ends[before])..ends[i],
+            None => i * self.len..n.min((i + 1) * self.len),
+        }
+    }
+
+    /// The ranges of the blocks of a vector of `n` values.
+    pub(crate) fn ranges(&self, n: usize) -> impl Iterator<Item = Range<usize>> {
+        let n_blocks = self.ends.as_ref().map_or_else(|| n.div_ceil(self.len), |ends| ends.len());
+        (0..n_blocks).map(move |i| self.range(i, n))
+    }
+
+    /// The blocks of a vector.
+    pub(crate) fn chunks<'v, T>(&self, values: &'v [T]) -> impl Iterator<Item = &'v [T]> {
+        self.ranges(values.len()).map(move |range| &values[range])
+    }
+
+    /// The blocks of a vector that is changed.
+    pub(crate) fn chunks_mut<'v, T>(&self, mut values: &'v mut [T]) -> impl Iterator<Item = &'v mut [T]> {
+        self.ranges(values.len()).map(move |range| values.split_off_mut(..range.len()).unwrap_or_default())
     }
 
     /// Area of an element of block `i`.

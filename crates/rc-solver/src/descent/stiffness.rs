@@ -69,7 +69,7 @@ pub(crate) fn least_rise(pressure: &[f64], n: f64, operator: &mut dyn Preconditi
     let mut x = vec![0.0_f32; pressure.len()];
     search(pressure, (n, GAIN_OF_RISE), operator, |length, directions| directions.add_to(&mut x, length));
     let layout = operator.layout();
-    let sums = parallel::map(x.chunks(layout.len()), |x| [x.iter().copied().map(f64::from).sum::<f64>()]);
+    let sums = parallel::map(layout.chunks(&x), |x| [x.iter().copied().map(f64::from).sum::<f64>()]);
     let [sum] = layout.total(sums);
     let in_contact = x.iter().zip(pressure).filter(|(_, p)| **p > 0.0).map(|(&x, _)| f64::from(x) * n / sum);
     layout.minimum(&in_contact.collect::<Vec<f64>>())
@@ -85,13 +85,12 @@ pub(crate) fn gain(converged: bool) -> f64 {
 /// error of x enters squared.
 pub(crate) fn stiffness_under(x: &[f32], n: f64, operator: &mut dyn BlockOperator<f32>) -> f64 {
     let layout = operator.layout();
-    let len = layout.len();
-    let means = write_blocks(operator, x.chunks(len), |x, written| {
+    let means = write_blocks(operator, layout.chunks(x), |x, written| {
         written.copy_from_slice(x);
         [x.iter().copied().map(f64::from).sum::<f64>()]
     });
     operator.apply();
-    let works = read_blocks(operator, x.chunks(len), |x, displacement| {
+    let works = read_blocks(operator, layout.chunks(x), |x, displacement| {
         [x.iter().zip(displacement).map(|(&x, &v)| f64::from(x) * f64::from(v)).sum::<f64>()]
     });
     let ([mean], [work]) = (layout.total(means), layout.total(works));
@@ -155,7 +154,7 @@ pub(crate) fn search(
         if step == 0 {
             operator.set_mean(stiffness);
         }
-        take_step(length, &mut directions, &mut residual, &layout);
+        take_step(length, &mut directions, &mut residual);
         beta = directions.precondition(Some(&mut *operator), &layout).with_displacement / sums.curvature;
     }
     stiffness
@@ -179,7 +178,7 @@ fn first_direction(
 ) -> ConjugateDirections {
     let layout = operator.layout();
     let counts =
-        parallel::map(active.chunks(layout.len()), |active| [active.iter().filter(|&&active| active).count() as f64]);
+        parallel::map(layout.chunks(&active), |active| [active.iter().filter(|&&active| active).count() as f64]);
     let [n_contact] = layout.total(counts);
     if n_contact <= HEAVY_CONTACT * n {
         return ConjugateDirections::along(active, against(pressure, &layout));
@@ -197,8 +196,9 @@ fn against(pressure: &[f64], layout: &BlockLayout) -> Vec<f32> {
 }
 
 /// Takes a step of this `length` along the direction: writes the residual and keeps it.
-fn take_step(length: f32, directions: &mut ConjugateDirections, residual: &mut [f32], layout: &BlockLayout) {
-    let (steps, written) = directions.steps_and_residuals(layout.len());
-    let blocks = residual.chunks_mut(layout.len()).zip(steps.zip(written));
+fn take_step(length: f32, directions: &mut ConjugateDirections, residual: &mut [f32]) {
+    const BLOCK: usize = 4096;
+    let (steps, written) = directions.steps_and_residuals(BLOCK);
+    let blocks = residual.chunks_mut(BLOCK).zip(steps.zip(written));
     parallel::for_each(blocks, |(residual, (step, written))| step.update_residual(length, residual, written));
 }

@@ -201,13 +201,14 @@ impl<'a> TileLevels<'a> {
             info.mean_displacement += displacement_of_patch(&elements, &pressure, grid);
         }
         info.friction = self.friction(grid, (&elements, &pressure), &info, work);
+        let (mesh, pressure) = self.in_contact(elements, pressure);
         TileSolution {
             data: Arc::clone(&self.data),
             h_max: self.problem.h_max,
             converged: outcome.certificate.meets(self.params.solve.bound),
             grid: self.solution_grid(),
             finest: grid,
-            mesh: elements,
+            mesh,
             pressure,
             area,
             hardness,
@@ -215,6 +216,21 @@ impl<'a> TileLevels<'a> {
             info,
             evaluated,
             proven: grid.len() - covered,
+        }
+    }
+
+    /// The tiles in contact and the pressure on them, on which later sums have the same digits.
+    fn in_contact(&self, elements: Mesh, pressure: Vec<f64>) -> (Mesh, Vec<f64>) {
+        // A uniform displacement is subtracted where elements cover the cell, and tails skip missing tiles.
+        if elements.cover_cell() || self.data.kernels.is_sliding() {
+            return (elements, pressure);
+        }
+        match elements.thinned(|cells| pressure[cells].iter().any(|p| *p > 0.0 || p.is_nan())) {
+            Some(mesh) if !mesh.is_empty() => {
+                let pressure = elements.moved(&mesh, &pressure, 0.0);
+                (mesh, pressure)
+            }
+            _ => (elements, pressure),
         }
     }
 

@@ -7,27 +7,23 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use rayon::prelude::*;
 use rc_core::{Grid, Observer};
 use rc_quadtree::{BLOCK_CELLS, ContactFields};
 
-use crate::descent::gap::{fresh_gap, rescale};
 use crate::descent::info::LevelInfo;
-use crate::descent::load::{has_drifted, project_to_load};
+use crate::descent::load::project_to_load;
 use crate::descent::operators::{BlockOperator, LevelOperators, write_blocks};
-use crate::descent::outcome::Outcome;
-use crate::descent::rows::ElementValues;
 use crate::descent::run::{DescentObserver, Goal};
 use crate::descent::state::{Descent, Start};
-use crate::descent::sums::GapSums;
 use crate::levels::coarse_level::{SolvedLevel, add_work};
-use crate::levels::operator_error::{OperatorError, PressureScale};
+use crate::levels::evaluation::{Evaluated, Evaluation, out_of_reach};
+use crate::levels::operator_error::PressureScale;
 use crate::levels::tile_descent::{StorageTables, TileDescent};
 use crate::levels::tiles::TileLevels;
 use crate::sliding::newton::Work;
 use crate::tiles::element_heights::element_heights;
 use crate::tiles::exclusion::SmoothDisplacement;
-use crate::tiles::gap_operator::{GapOperator, GapTables, PreparedGap};
+use crate::tiles::gap_operator::{GapTables, PreparedGap};
 use crate::tiles::mesh::Mesh;
 use crate::tiles::operator::corrections::TileCorrections;
 use crate::tiles::operator::tables::Tables;
@@ -93,24 +89,6 @@ pub(super) fn solve_finest_level(
     level.into_solved(evaluation)
 }
 
-/// Elements where contact is possible, with their heights.
-struct Candidates {
-    elements: Mesh,
-    heights: Vec<f64>,
-}
-
-/// Pressure and gap on all candidates, and the certificate that follows from them.
-struct Evaluation {
-    pressure: Vec<f64>,
-    gap: Vec<f64>,
-    /// Outcome with a certificate that includes the error of the certifying operator.
-    outcome: Outcome,
-    scale: PressureScale,
-    error: OperatorError,
-    /// Factor by which pressure and gap were scaled after the application of the operator.
-    scaling: f64,
-}
-
 /// Tables of the operators.
 struct OperatorTables {
     quick: Tables<f32>,
@@ -136,19 +114,13 @@ impl TablesForGaps {
     }
 }
 
-/// The maximum |v| of elements with these heights and gaps.
-///
-/// c in `g = v - h + c` is `offset`. A uniform displacement that is added to it is not counted.
-fn maximum_displacement(mesh: &Mesh, heights: &[f64], gap: &[f64], offset: f64) -> f64 {
-    let pairs = heights.par_iter().zip(gap);
-    let own = pairs.map(|(h, g)| (g + (h - offset)).abs()).reduce(|| 0.0, f64::max);
-    mesh.ranks().maximum(own, 0.0)
-}
-
 struct FinestLevel<'s, 'a> {
     levels: &'s TileLevels<'a>,
     tables: OperatorTables,
-    candidates: Candidates,
+    /// Elements where contact is possible.
+    candidates: Mesh,
+    /// Elements whose heights are known, with these heights.
+    known: Option<(Mesh, Vec<f64>)>,
     /// The pressure of the last descent, or the start before the first descent.
     current: MeshStart,
     info: LevelInfo,
@@ -172,16 +144,16 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         };
         let candidates = first_candidates(levels, &start, &tables.quick, contact_gap);
         let info = LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 };
-        Self { levels, tables, candidates, current: start, info, work: Work::default() }
+        Self { levels, tables, candidates, known: None, current: start, info, work: Work::default() }
     }
 
     /// Improves the pressure on the elements near contact. Returns whether it reached the tolerance there.
     ///
     /// Fresh gaps come from the operator for certificates if `certify`. The first round uses the operator for descents.
     fn improve(self, evaluation: Evaluation, certify: bool, observer: &dyn Observer) -> (Self, bool) {
-        let Self { levels, mut tables, mut candidates, current, mut info, mut work } = self;
+        let Self { levels, mut tables, candidates, known, current, mut info, mut work } = self;
         let tolerance = evaluation.error.goal(levels.params.solve.bound, &levels.problem);
-        let near = NearContact::choose(&mut candidates, &current.elements, evaluation, levels);
+        let near = NearContact::choose((&candidates, known), &current, evaluation, levels);
         let hierarchy = levels.hierarchy(&near.elements, levels.data.kernels.quick().reach());
         let (prepared, fresh) = tables.gaps.choose(levels, certify);
         let fresh_hierarchy = levels.hierarchy(&near.elements, prepared.reach());
@@ -212,47 +184,25 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         add_work(&mut info, &descent.info());
         work = work.plus(descent.work());
         let pressure = descent.into_descent().into_pressure();
-        candidates.heights = candidate_heights(levels, &candidates.elements, Some((&near.elements, &near.heights)));
+        let known = Some((near.elements.clone(), near.heights));
         let current = MeshStart { elements: near.elements, pressure };
-        (Self { levels, tables, candidates, current, info, work }, reached)
+        (Self { levels, tables, candidates, known, current, info, work }, reached)
     }
 
-    /// The gap on all candidates, and the operator that computed it.
+    /// The gap on all candidates, and the displacement of the base grid.
     ///
-    /// The operator is the one for certificates if `certify`, otherwise the one for descents.
-    fn evaluate(&self, certify: bool) -> (Evaluation, Box<dyn GapOperator + '_>) {
-        let Self { levels, tables, candidates: Candidates { elements, heights }, current, info, .. } = self;
-        let (prepared, tables) = tables.gaps.choose(levels, certify);
-        let mut pressure = current.elements.moved(elements, &current.pressure, 0.0);
-        let mut gap = vec![0.0; pressure.len()];
-        let (n_cell, layout) = (info.grid.len() as f64, elements.layout());
-        if has_drifted(levels.problem.bounds, n_cell, &layout, &pressure) {
-            project_to_load(&levels.problem, n_cell, &layout, &mut pressure, None);
-        }
-        let hierarchy = levels.hierarchy(elements, prepared.reach());
-        let mut operator = levels.operator(hierarchy, tables, current);
-        let empty = GapSums::empty(f64::INFINITY, levels.problem.bounds.hardness);
-        let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
-        let mut sums = fresh_gap(&mut *operator, &levels.problem, values, empty);
-        let scaling = sums.scale_to_penetration(&levels.problem);
-        if let Some(scale) = scaling {
-            let values = ElementValues { heights, pressure: &mut pressure, gap: &mut gap };
-            sums = rescale(scale, &elements.layout(), &levels.problem, values, empty);
-        }
-        let mut outcome = Outcome::new(&levels.problem, &sums, info.grid.len() as f64, true);
-        let uniform = levels.problem.uniform_displacement(outcome.mean_pressure);
-        let size = maximum_displacement(elements, heights, &gap, levels.problem.offset() + uniform);
-        let n_levels = (levels.n_levels(info.grid), levels.data.kernels.unresolved());
-        let scale = PressureScale::new((elements, &pressure), n_levels, size, outcome.energy_length(&levels.problem));
-        // Descents leave room for the error of the certifying operator.
-        let error = OperatorError::of(levels.certified().split(), &scale, levels.problem.bounds.control);
-        outcome.iteration_error = outcome.certificate.energy;
-        outcome.certificate = error.added_to(outcome.certificate, levels.problem.h_range);
-        (Evaluation { pressure, gap, outcome, scale, error, scaling: scaling.unwrap_or(1.0) }, operator)
+    /// They come from the operator for certificates if `certify`, otherwise from the one for descents.
+    fn evaluate(&self, certify: bool) -> (Evaluation, Vec<f64>) {
+        let Self { levels, tables, candidates, known, current, info, .. } = self;
+        let known = known.as_ref().map(|(mesh, heights)| (mesh, &**heights));
+        let evaluated = Evaluated { levels, grid: info.grid, elements: candidates, known, current };
+        evaluated.evaluate(tables.gaps.choose(levels, certify))
     }
 
-    /// The gap on all candidates.
+    /// The gap on all candidates, whose heights are kept for the choice of those near contact.
     fn evaluate_candidates(&mut self) -> Evaluation {
+        let heights = candidate_heights(self.levels, &self.candidates, None);
+        self.known = Some((self.candidates.clone(), heights));
         self.info.operator_applications += 1;
         self.evaluate(false).0
     }
@@ -261,13 +211,12 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     fn evaluate_whole_cell(&mut self) -> Evaluation {
         loop {
             self.info.operator_applications += 1;
-            let (evaluation, operator) = self.evaluate(true);
-            let more = self.with_more_candidates(&evaluation, &*operator);
-            if more.n_cells() <= self.candidates.elements.n_cells() {
+            let (evaluation, base) = self.evaluate(true);
+            let more = self.with_more_candidates(&evaluation, base);
+            if more.n_cells() <= self.candidates.n_cells() {
                 return evaluation;
             }
-            drop(operator);
-            self.candidates = Candidates::new(self.levels, more);
+            self.candidates = more;
         }
     }
 
@@ -275,16 +224,16 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     ///
     /// Elements are divided where they are too coarse. Tiles of the coarsest level are added wherever contact is
     /// possible.
-    fn with_more_candidates(&self, evaluation: &Evaluation, operator: &dyn GapOperator) -> Mesh {
-        let (levels, elements) = (self.levels, &self.candidates.elements);
-        let Evaluation { pressure, gap, outcome, error, scaling, .. } = evaluation;
-        let mut values = operator.base_displacement();
-        for v in &mut values {
+    fn with_more_candidates(&self, evaluation: &Evaluation, mut base: Vec<f64>) -> Mesh {
+        let (levels, elements) = (self.levels, &self.candidates);
+        let Evaluation { pressed, gap, outcome, error, scaling, .. } = evaluation;
+        let MeshStart { elements: pressing, pressure } = pressed.as_ref().unwrap_or(&self.current);
+        for v in &mut base {
             *v *= scaling;
         }
         let smooth = SmoothDisplacement {
-            values: &values,
-            curvature: levels.certified().remainder_curvature() * elements.layout().maximum(pressure, 0.0),
+            values: &base,
+            curvature: levels.certified().remainder_curvature() * pressing.layout().maximum(pressure, 0.0),
             error: EXCLUSION_MARGIN * error.displacement,
         };
         let places = levels.possible_contact(&smooth, elements.coarsest().extent(), outcome.contact_gap);
@@ -297,16 +246,13 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     }
 
     fn into_solved(self, evaluation: Evaluation) -> (SolvedLevel, PressureScale) {
-        let Self { candidates: Candidates { elements, .. }, info, work, .. } = self;
-        let Evaluation { pressure, gap, outcome, scale, .. } = evaluation;
+        let Self { candidates: elements, known, current, info, work, .. } = self;
+        drop(known);
+        let Evaluation { pressed, gap, outcome, scale, .. } = evaluation;
+        let MeshStart { elements: pressing, pressure } = pressed.unwrap_or(current);
+        let pressure = pressing.moved(&elements, &pressure, 0.0);
         let (evaluated, covered) = (elements.n_cells(), elements.n_finest());
         (SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, info, work }, scale)
-    }
-}
-
-impl Candidates {
-    fn new(levels: &TileLevels<'_>, elements: Mesh) -> Self {
-        Self { heights: candidate_heights(levels, &elements, None), elements }
     }
 }
 
@@ -315,13 +261,8 @@ fn candidate_heights(levels: &TileLevels<'_>, elements: &Mesh, known: Option<(&M
     element_heights(&levels.data.heights, elements, known, out_of_reach(levels, elements))
 }
 
-/// The height of values that stand for no element.
-fn out_of_reach(levels: &TileLevels<'_>, elements: &Mesh) -> f64 {
-    levels.problem.out_of_reach(elements.finest().sides().into_iter().product())
-}
-
 /// Elements where the start may touch according to the quick operator.
-fn first_candidates(levels: &TileLevels<'_>, start: &MeshStart, tables: &Tables<f32>, contact_gap: f64) -> Candidates {
+fn first_candidates(levels: &TileLevels<'_>, start: &MeshStart, tables: &Tables<f32>, contact_gap: f64) -> Mesh {
     let MeshStart { elements, pressure } = start;
     let mut quick =
         levels.quick_operator(levels.hierarchy(elements, levels.data.kernels.quick().reach()), tables, start);
@@ -334,7 +275,7 @@ fn first_candidates(levels: &TileLevels<'_>, start: &MeshStart, tables: &Tables<
     let curvature = levels.data.kernels.quick().remainder_curvature() * elements.layout().maximum(pressure, 0.0);
     let smooth = SmoothDisplacement { values: &quick.base_displacement(), curvature, error: 0.0 };
     let places = levels.possible_contact(&smooth, elements.coarsest().extent(), gap);
-    Candidates::new(levels, Mesh::new(elements.with(&places), levels.ranks()))
+    Mesh::new(elements.with(&places), levels.ranks())
 }
 
 /// The candidates that a descent works on.
@@ -348,11 +289,16 @@ struct NearContact {
 }
 
 impl NearContact {
-    /// Chooses the candidates near contact. `before` are the elements of the last descent.
+    /// Chooses the candidates near contact, among which are those of the last descent.
     ///
-    /// The candidates lose their heights, because descents need the memory.
-    fn choose(candidates: &mut Candidates, before: &Mesh, evaluation: Evaluation, levels: &TileLevels<'_>) -> Self {
-        let Evaluation { pressure, gap, outcome, .. } = evaluation;
+    /// Some heights are `known`. `current` is the pressure that was evaluated.
+    fn choose(
+        (candidates, known): (&Mesh, Option<(Mesh, Vec<f64>)>),
+        current: &MeshStart,
+        evaluation: Evaluation,
+        levels: &TileLevels<'_>,
+    ) -> Self {
+        let Evaluation { pressed, gap, outcome, .. } = evaluation;
         // Elements that are nearer to contact than the error may still come into contact.
         let error = match outcome.mean_pressure {
             // If coarser levels have lost a contact that they hardly resolve, there is no pressure. The contact begins
@@ -361,15 +307,21 @@ impl NearContact {
             _ => outcome.certificate.penetration * levels.problem.h_range,
         };
         let near = outcome.contact_gap + error;
+        // No other elements than those of the last descent press, unless pressures were brought to all candidates.
+        let on_all = pressed.as_ref().filter(|pressed| pressed.pressure.len() == gap.len());
         let is_near = |sides: [usize; 2], place: [u32; 2], mut cells: Range<usize>| {
-            before.has(sides, place) || cells.any(|i| pressure[i] > 0.0 || gap[i] < near)
+            current.elements.has(sides, place)
+                || cells.any(|i| gap[i] < near || on_all.is_some_and(|pressed| pressed.pressure[i] > 0.0))
         };
-        let elements = candidates.elements.chosen(is_near);
+        let elements = candidates.chosen(is_near);
         // The vectors are moved one after the other. Nothing presses on values that fill up a level.
+        let heights = candidate_heights(levels, &elements, known.as_ref().map(|(mesh, heights)| (mesh, &**heights)));
+        drop(known);
         let lowest = out_of_reach(levels, &elements);
-        let chosen = |values: Vec<f64>, elsewhere: f64| candidates.elements.moved(&elements, &values, elsewhere);
-        let heights = chosen(std::mem::take(&mut candidates.heights), lowest);
-        let (gap, pressure) = (chosen(gap, levels.problem.offset() - lowest), chosen(pressure, 0.0));
-        Self { elements, heights, pressure, gap }
+        let moved_gap = candidates.moved(&elements, &gap, levels.problem.offset() - lowest);
+        drop(gap);
+        let MeshStart { elements: pressing, pressure } = pressed.as_ref().unwrap_or(current);
+        let pressure = pressing.moved(&elements, pressure, 0.0);
+        Self { elements, heights, pressure, gap: moved_gap }
     }
 }

@@ -7,6 +7,7 @@ pub(crate) mod checkpoint;
 pub(crate) mod checks;
 pub(crate) mod coarse_level;
 pub(crate) mod estimate;
+mod evaluation;
 pub(crate) mod finest_level;
 pub(crate) mod grids;
 pub(crate) mod nested;

@@ -21,6 +21,7 @@ impl Mesh {
             centres.extend(places.iter().map(centre));
         }
         let layout = BlockLayout::of(BLOCK_CELLS).with_runs(CELLS, centres, self.coarsest().sides()).over(self.ranks());
+        let layout = layout.with_ends(self.block_ends());
         if self.levels().len() == 1 {
             return layout;
         }

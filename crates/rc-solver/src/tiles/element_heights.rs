@@ -1,8 +1,10 @@
 //! Heights of elements: at the centres of the smallest elements, and means over larger ones.
 
-use rayon::prelude::*;
+use std::ops::Range;
+
 use rc_quadtree::{CELLS, Elements, TileSet, means_of_quarter, quarters};
 
+use crate::parallel;
 use crate::problem::steps::Step;
 use crate::tiles::heights::on_demand::Heights;
 use crate::tiles::mesh::Mesh;
@@ -20,25 +22,33 @@ pub(crate) fn element_heights(
     elsewhere: f64,
 ) -> Vec<f64> {
     let _running = Step::Heights.begin();
-    let mut result = match known {
-        Some((known, values)) => known.moved(mesh, values, elsewhere),
-        None => vec![elsewhere; mesh.n_own()],
-    };
-    for (coarser, places, values) in mesh.own_levels() {
-        let tiles = &mesh.levels()[coarser];
-        let known = known.map(|(known, _)| &known.levels()[coarser]);
-        let (cells, _) = result[values].as_chunks_mut::<CELLS>();
-        cells.par_iter_mut().zip(places).with_min_len(16).for_each(|(cells, &place)| {
-            if known.is_some_and(|known| known.find(place[0].into(), place[1].into()).is_some()) {
-                return;
-            }
-            heights.tile(tiles.sides(), place.map(|i| i as usize), cells);
-            if coarser > 0 {
-                to_means(heights, tiles, place, coarser, cells);
-            }
-        });
-    }
+    let (layout, mut result) = (mesh.layout(), vec![elsewhere; mesh.n_own()]);
+    let blocks = layout.ranges(result.len()).zip(layout.chunks_mut(&mut result));
+    parallel::for_each(blocks, |(block, cells)| block_heights(heights, (mesh, block), known, cells));
     result
+}
+
+/// Writes the heights of the elements of one block of vectors, as [`element_heights`] does.
+///
+/// Other values of the block stay.
+pub(crate) fn block_heights(
+    heights: &Heights<'_>,
+    (mesh, block): (&Mesh, Range<usize>),
+    known: Option<(&Mesh, &[f64])>,
+    cells: &mut [f64],
+) {
+    let (coarser, _, places) = mesh.tiles_of(block);
+    let tiles = &mesh.levels()[coarser];
+    for (cells, &place) in cells.as_chunks_mut::<CELLS>().0.iter_mut().zip(places) {
+        if let Some(known) = known.and_then(|(known, values)| known.tile(coarser, place, values)) {
+            *cells = *known;
+            continue;
+        }
+        heights.tile(tiles.sides(), place.map(|i| i as usize), cells);
+        if coarser > 0 {
+            to_means(heights, tiles, place, coarser, cells);
+        }
+    }
 }
 
 /// Changes heights at centres to means over the centres of the smallest elements.

@@ -2,9 +2,10 @@
 
 use std::borrow::Cow;
 use std::ops::{Deref, Range};
+use std::sync::Arc;
 
 use rc_comm::Ranks;
-use rc_quadtree::{CELLS, Elements, TileSet};
+use rc_quadtree::{BLOCK_TILES, CELLS, Elements, TileSet};
 
 use crate::tiles::deal::Deal;
 use crate::tiles::part::{Part, append_around, pack_tile, unpack_tiles};
@@ -19,6 +20,8 @@ pub(crate) struct Mesh {
     ranks: Ranks,
     /// The tiles of the finest level that this rank has.
     own_tiles: Range<usize>,
+    /// Ends of the blocks of vectors that are shorter than others ([`Mesh::thinned`]).
+    block_ends: Option<Arc<[usize]>>,
 }
 
 /// Values on the elements that a rank has and on those around them.
@@ -49,7 +52,7 @@ impl Mesh {
     pub(crate) fn new(elements: Elements, ranks: &Ranks) -> Self {
         debug_assert!(ranks.size() == 1 || elements.levels().len() == 1, "elements of one size");
         let own_tiles = Deal::equal(elements.finest().len(), ranks).range(ranks.rank());
-        Self { elements, ranks: ranks.clone(), own_tiles }
+        Self { elements, ranks: ranks.clone(), own_tiles, block_ends: None }
     }
 
     /// The ranks.
@@ -94,6 +97,57 @@ impl Mesh {
     /// The places of the tiles of the finest level that this rank has.
     pub(crate) fn own_places(&self) -> &[[u32; 2]] {
         &self.finest().places()[self.own_tiles.clone()]
+    }
+
+    /// The tiles of a block of vectors, which this rank has: their level, their range there, and their places.
+    ///
+    /// The level is given by its coarseness. On the finest level, the range is among the own tiles.
+    pub(crate) fn tiles_of(&self, block: Range<usize>) -> (usize, Range<usize>, &[[u32; 2]]) {
+        let mut levels = self.own_levels();
+        let found = levels.find(|(.., values)| values.contains(&block.start));
+        let (coarser, places, values) = found.expect("levels begin with whole blocks");
+        let [start, end] = [block.start, block.end.min(values.end)].map(|value| (value - values.start) / CELLS);
+        (coarser, start..end, &places[start..end])
+    }
+
+    /// The `values` of the tile at a place of a level, if this rank has it.
+    pub(crate) fn tile<'v>(
+        &self,
+        coarser: usize,
+        [column, row]: [u32; 2],
+        values: &'v [f64],
+    ) -> Option<&'v [f64; CELLS]> {
+        let (_, _, level) = self.own_levels().nth(coarser)?;
+        let first = if coarser == 0 { self.own_tiles.start } else { 0 };
+        let tile = self.levels()[coarser].find(column.into(), row.into())?.checked_sub(first)?;
+        values[level].as_chunks().0.get(tile)
+    }
+
+    /// Ends of the blocks of vectors that are shorter than others.
+    pub(crate) fn block_ends(&self) -> Option<Arc<[usize]>> {
+        self.block_ends.clone()
+    }
+
+    /// The mesh of the tiles for which `wanted` is true, given the range of their values.
+    ///
+    /// Blocks of vectors lose the other tiles, and stay apart otherwise. Sums over blocks therefore keep their digits
+    /// if values on the other tiles are zero. `None` for elements of several sizes or on several ranks.
+    pub(crate) fn thinned(&self, wanted: impl Fn(Range<usize>) -> bool) -> Option<Self> {
+        if self.levels().len() > 1 || self.ranks.size() > 1 {
+            return None;
+        }
+        debug_assert!(self.block_ends.is_none(), "whole blocks");
+        let (tiles, mut places, mut ends) = (self.finest(), Vec::new(), Vec::new());
+        for (block, of_block) in tiles.places().chunks(BLOCK_TILES).enumerate() {
+            let starts = (block * BLOCK_TILES * CELLS..).step_by(CELLS);
+            let chosen = of_block.iter().zip(starts).filter(|&(_, first)| wanted(first..first + CELLS));
+            places.extend(chosen.map(|(&place, _)| place));
+            ends.push(places.len() * CELLS);
+        }
+        ends.dedup();
+        let ends = if ends.first() == Some(&0) { &ends[1..] } else { &ends };
+        let tiles = tiles.of_same_cell(tiles.sides(), places);
+        Some(Self { block_ends: Some(ends.into()), ..Self::new(Elements::uniform(tiles), &self.ranks) })
     }
 
     /// The elements of this rank alone.

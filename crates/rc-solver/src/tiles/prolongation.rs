@@ -19,6 +19,7 @@ use crate::tiles::mesh::Mesh;
 /// Elements, and the pressure on them from which an iteration starts.
 ///
 /// The pressure is zero everywhere else.
+#[derive(Clone)]
 pub(crate) struct MeshStart {
     pub(crate) elements: Mesh,
     pub(crate) pressure: Vec<f64>,

@@ -13,6 +13,7 @@ use crate::descent::contact_system::solve_on_contact;
 use crate::descent::info::{SolveInfo, Status};
 use crate::descent::operators::{BlockOperator, LevelOperators, read_blocks, write_blocks};
 use crate::descent::stiffness::{elastic_part, least_rise, stiffness_by_gmres, stiffness_pressure, stiffness_under};
+use crate::parallel;
 use crate::problem::capabilities::Feature;
 use crate::solution::contact_area::area::ContactArea;
 use crate::solution::contact_area::plastic::PlasticEdges;
@@ -161,11 +162,11 @@ impl TileSolution<'_> {
 
     /// The hierarchy and tables of L by this kernel on the mesh.
     fn operator_of(&self, prepared: &Prepared<f32>) -> (Arc<Hierarchy>, Tables<f32>) {
-        (self.hierarchy(prepared.reach()), prepared.tables(self.finest))
+        (self.hierarchy(&self.mesh, prepared.reach()), prepared.tables(self.finest))
     }
 
-    fn hierarchy(&self, reach: Reach) -> Arc<Hierarchy> {
-        Arc::new(Hierarchy::new(self.base(), self.mesh.clone(), reach))
+    fn hierarchy(&self, mesh: &Mesh, reach: Reach) -> Arc<Hierarchy> {
+        Arc::new(Hierarchy::new(self.base(), mesh.clone(), reach))
     }
 }
 
@@ -272,12 +273,14 @@ impl Solved for TileSolution<'_> {
         let mut wanted = vec![0.0; self.pressure.len()];
         self.exchange(&mut wanted, &mut on_grid, |wanted, given| *wanted = *given);
         let mut preconditioner = kernels.preconditioner().tables(self.finest);
-        let (hierarchy, tables) = self.operator_of(kernels.quick());
-        let prepared = kernels.gap(GapSplit::most_accurate());
+        let (quick, prepared) = (kernels.quick(), kernels.gap(GapSplit::most_accurate()));
+        // GMRES works on whole blocks.
+        let mesh = Mesh::new(self.mesh.elements().clone(), self.mesh.ranks());
+        let (hierarchy, tables) = (self.hierarchy(&mesh, quick.reach()), quick.tables(self.finest));
         let fresh = prepared.tables(self.finest);
         let mut operators = LevelOperators {
             corrections: Box::new(TileCorrections::new(hierarchy, &tables, &mut preconditioner)),
-            fresh: fresh.operator(self.hierarchy(prepared.reach()), 0.0, 1.0),
+            fresh: fresh.operator(self.hierarchy(&mesh, prepared.reach()), 0.0, 1.0),
         };
         let mut found =
             solve_on_contact(&self.pressure, &wanted, is_balanced, &mut operators).map_err(GradientError::Inexact)?;
@@ -357,8 +360,9 @@ fn row_of_tiles(tiles: &TileSet, values: &[f64], row: usize) -> Vec<f64> {
 
 /// Root mean square over the whole cell.
 pub(crate) fn rms_pressure(elements: &Mesh, pressure: &[f64]) -> f64 {
-    let squares = pressure.par_chunks(BLOCK_CELLS).map(|p| [p.iter().map(|p| p * p).sum()]).collect();
-    let [squares] = elements.layout().total(squares);
+    let layout = elements.layout();
+    let squares = parallel::map(layout.chunks(pressure), |p| [p.iter().map(|p| p * p).sum()]);
+    let [squares] = layout.total(squares);
     let n_cell: usize = elements.finest().sides().into_iter().product();
     (squares / n_cell as f64).sqrt()
 }

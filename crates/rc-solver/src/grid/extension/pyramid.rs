@@ -1,6 +1,6 @@
 //! F and its transpose, from the values of a grid over means on coarser and coarser grids.
 
-use crate::grid::extension::rows::{Parts, Shares, TASK, collect, interpolate, means};
+use crate::grid::extension::rows::{Parts, Shares, TASK, Weight, collect, interpolate, means};
 use crate::parallel;
 
 /// A grid of squares of 2 × 2 values of the next finer grid.
@@ -62,21 +62,11 @@ impl Level {
     }
 }
 
-/// Weight of a square of which the part x is active. `docs/constants.md` compares x^(3/4) with other powers.
-pub(crate) fn of_part(x: f32) -> f32 {
-    x.sqrt() * x.sqrt().sqrt()
-}
-
-/// The same in a row. A contact displaces a half-plane to a distance that hardly depends on its width.
-fn of_part_of_line(x: f32) -> f32 {
-    x.sqrt().sqrt()
-}
-
 /// F and its transpose on a grid, whose values and [`Shares`] the caller has.
 pub(crate) struct Extension {
     nx: usize,
-    /// Whether the grid is a single row.
-    is_line: bool,
+    /// Factor on the mean of the single square, around which there is nothing.
+    top: f32,
     /// Grids of squares, finest first. The last is a single square.
     levels: Vec<Level>,
 }
@@ -86,26 +76,23 @@ impl Extension {
     pub(crate) fn new([nx, ny]: [usize; 2]) -> Self {
         let (mut levels, mut sides) = (Vec::new(), [nx, ny]);
         let is_line = ny == 1;
-        let share = if is_line { 0.5 } else { 0.25 };
+        let (share, weight) = if is_line { (0.5, Weight::OfLine) } else { (0.25, Weight::OfSquare) };
         while levels.is_empty() || sides != [1, 1] {
             sides = sides.map(|n| n.div_ceil(2));
             let n = sides[0] * sides[1];
-            levels.push(Level { nx: sides[0], share, parts: Parts::new(n), values: parallel::zeros(n) });
+            levels.push(Level { nx: sides[0], share, parts: Parts::new(n, weight), values: parallel::zeros(n) });
         }
-        Self { nx, is_line, levels }
+        Self { nx, top: 0.0, levels }
     }
 
     /// Prepares the extension for the parts of `active` elements.
     pub(crate) fn set_active<T: Copy + Sync>(&mut self, active: &[T], part: impl Fn(T) -> f32 + Sync) {
         self.take_means(active, part);
-        let weight: fn(f32) -> f32 = if self.is_line { of_part_of_line } else { of_part };
         for level in &mut self.levels {
-            level.parts.set(&level.values, weight);
+            level.parts.set(&level.values);
         }
-        if let Some(Level { parts, values, .. }) = self.levels.last_mut() {
-            // There is nothing around a single square.
-            parts.own[0] = if values[0] > 0.0 { values[0].recip() } else { 0.0 };
-        }
+        let single = self.levels.last().map_or(0.0, |level| level.values[0]);
+        self.top = if single > 0.0 { single.recip() } else { 0.0 };
     }
 
     /// Prepares [`Extension::fill`] for means over all elements. Elements that are not active count as zero.
@@ -116,7 +103,7 @@ impl Extension {
             let Level { nx, parts, values, .. } = &mut finer[k];
             match coarser.first() {
                 Some(coarser) => coarser.fill_all(*nx, parts.shares(), values),
-                None => values[0] *= parts.own[0],
+                None => values[0] *= self.top,
             }
         }
     }
@@ -144,7 +131,7 @@ impl Extension {
             let Level { nx, parts, values, .. } = &mut finer[k];
             match coarser.first() {
                 Some(coarser) => coarser.hand_down(*nx, parts.shares(), values),
-                None => values[0] *= parts.own[0],
+                None => values[0] *= self.top,
             }
         }
         self.levels[0].hand_down(self.nx, shares, values);

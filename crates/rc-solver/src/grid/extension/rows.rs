@@ -10,33 +10,65 @@ use crate::parallel;
 /// Minimum number of values that one task works on.
 pub(super) const TASK: usize = 4096;
 
-/// Factors of squares that are active in part.
+/// Squares that are active in part.
 pub(crate) struct Parts {
+    /// The part of the elements of each square that is active.
+    active: Vec<f32>,
+    weight: Weight,
+}
+
+/// Weight of a square of which the part x is active.
+#[derive(Clone, Copy)]
+pub(crate) enum Weight {
+    /// On a grid, x^(3/4). `docs/constants.md` compares it with other powers.
+    OfSquare,
+    /// In a row, x^(1/4). A contact displaces a half-plane to a distance that hardly depends on its width.
+    OfLine,
+}
+
+impl Weight {
+    #[inline]
+    fn of(self, x: f32) -> f32 {
+        match self {
+            Self::OfSquare => x.sqrt() * x.sqrt().sqrt(),
+            Self::OfLine => x.sqrt().sqrt(),
+        }
+    }
+
     /// Factor on the mean over all elements of a square, active or not.
-    pub(super) own: Vec<f32>,
+    #[inline]
+    fn own(self, x: f32) -> f32 {
+        // The mean over all elements is x times the mean over the active ones.
+        if x > 0.0 { self.of(x) / x } else { 0.0 }
+    }
+
     /// Factor on the value that larger squares have at the place of the square.
-    pub(crate) rest: Vec<f32>,
+    #[inline]
+    pub(crate) fn rest(self, x: f32) -> f32 {
+        if x > 0.0 { 1.0 - self.of(x) } else { 1.0 }
+    }
 }
 
 impl Parts {
-    pub(crate) fn new(n: usize) -> Self {
-        Self { own: parallel::zeros(n), rest: parallel::zeros(n) }
+    pub(crate) fn new(n: usize, weight: Weight) -> Self {
+        Self { active: parallel::zeros(n), weight }
     }
 
-    /// Sets the factors of squares, of whose elements these `parts` are active. They count by this `weight`.
-    pub(crate) fn set(&mut self, parts: &[f32], weight: impl Fn(f32) -> f32 + Sync) {
-        let blocks = self.own.chunks_mut(TASK).zip(self.rest.chunks_mut(TASK)).zip(parts.chunks(TASK));
-        parallel::for_each(blocks, |((own, rest), parts)| {
-            for ((own, rest), &x) in own.iter_mut().zip(rest).zip(parts) {
-                let part = weight(x);
-                // The mean over all elements is x times the mean over the active ones.
-                [*own, *rest] = if x > 0.0 { [part / x, 1.0 - part] } else { [0.0, 1.0] };
-            }
+    /// Sets the parts of squares that are active, which are the first of `parts`.
+    pub(crate) fn set(&mut self, parts: &[f32]) {
+        let parts = &parts[..self.active.len()];
+        parallel::for_each(self.active.chunks_mut(TASK).zip(parts.chunks(TASK)), |(own, parts)| {
+            own.copy_from_slice(parts);
         });
     }
 
+    /// The parts of a range of squares, and their weight.
+    pub(crate) fn of(&self, range: Range<usize>) -> (&[f32], Weight) {
+        (&self.active[range], self.weight)
+    }
+
     pub(crate) fn shares(&self) -> Shares<'_> {
-        Shares::Parts { own: &self.own, rest: &self.rest }
+        Shares::Parts { active: &self.active, weight: self.weight }
     }
 }
 
@@ -45,8 +77,8 @@ impl Parts {
 pub(crate) enum Shares<'a> {
     /// Elements, of which active ones have their own value, and the others the value around.
     Active(&'a [bool]),
-    /// Squares with a factor on the mean over all elements, and a factor on the value around.
-    Parts { own: &'a [f32], rest: &'a [f32] },
+    /// Squares that are active in part.
+    Parts { active: &'a [f32], weight: Weight },
 }
 
 impl Shares<'_> {
@@ -54,7 +86,7 @@ impl Shares<'_> {
     pub(crate) fn part(&self, range: Range<usize>) -> Shares<'_> {
         match self {
             Self::Active(active) => Shares::Active(&active[range]),
-            Self::Parts { own, rest } => Shares::Parts { own: &own[range.clone()], rest: &rest[range] },
+            Self::Parts { active, weight } => Shares::Parts { active: &active[range], weight: *weight },
         }
     }
 
@@ -67,9 +99,9 @@ impl Shares<'_> {
                     *value = if active { *value } else { around };
                 }
             }
-            Self::Parts { own, rest } => {
-                for ((value, around), (own, rest)) in values.zip(own.iter().zip(rest)) {
-                    *value = own * *value + rest * around;
+            Self::Parts { active, weight } => {
+                for ((value, around), &x) in values.zip(active) {
+                    *value = weight.own(x) * *value + weight.rest(x) * around;
                 }
             }
         }
@@ -84,9 +116,9 @@ impl Shares<'_> {
                     *sum += if active { 0.0 } else { weight * value };
                 }
             }
-            Self::Parts { rest, .. } => {
-                for ((sum, value), rest) in values.zip(rest) {
-                    *sum += weight * rest * value;
+            Self::Parts { active, weight: of_part } => {
+                for ((sum, value), &x) in values.zip(active) {
+                    *sum += weight * of_part.rest(x) * value;
                 }
             }
         }
@@ -101,9 +133,9 @@ impl Shares<'_> {
                     *value = if active { *value + over } else { 0.0 };
                 }
             }
-            Self::Parts { own, .. } => {
-                for ((value, over), own) in values.zip(own) {
-                    *value = own * *value + over;
+            Self::Parts { active, weight } => {
+                for ((value, over), &x) in values.zip(active) {
+                    *value = weight.own(x) * *value + over;
                 }
             }
         }

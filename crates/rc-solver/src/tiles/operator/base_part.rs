@@ -19,9 +19,11 @@ pub(crate) struct BasePart {
 }
 
 /// Values of the base grid.
-pub(crate) struct BaseValues<'a, T> {
+pub(crate) struct BaseValues<'a, T, F> {
     tiles: &'a TileSet,
-    values: Vec<T>,
+    /// The values of all ranks. `None` for a single rank, which sets values when they are copied.
+    values: Option<Vec<T>>,
+    set: F,
 }
 
 impl BasePart {
@@ -32,21 +34,29 @@ impl BasePart {
     /// The values of all tiles. Each rank computes those of its tiles with `set`.
     ///
     /// All ranks call this together.
-    pub(crate) fn values<T: Packed + Default>(&self, set: impl Fn(&[[u32; 2]], &mut [T]) + Sync) -> BaseValues<'_, T> {
-        let places = &self.tiles.places()[self.own.clone()];
-        let mut own = vec![T::default(); places.len() * CELLS];
-        parallel::for_each(blocks(places, &mut own), |(places, cells)| set(places, cells));
-        BaseValues { tiles: &self.tiles, values: self.ranks.concatenate(own) }
+    pub(crate) fn values<T, F>(&self, set: F) -> BaseValues<'_, T, F>
+    where
+        T: Packed + Default,
+        F: Fn(&[[u32; 2]], &mut [T]) + Sync,
+    {
+        let values = (self.ranks.size() > 1).then(|| {
+            let places = &self.tiles.places()[self.own.clone()];
+            let mut own = vec![T::default(); places.len() * CELLS];
+            parallel::for_each(blocks(places, &mut own), |(places, cells)| set(places, cells));
+            self.ranks.concatenate(own)
+        });
+        BaseValues { tiles: &self.tiles, values, set }
     }
 }
 
-impl<T: Copy + Default> BaseValues<'_, T> {
+impl<T: Copy + Default, F: Fn(&[[u32; 2]], &mut [T])> BaseValues<'_, T, F> {
     /// Copies the values at some places. They are zero where there is no tile.
     pub(crate) fn copy(&self, places: &[[u32; 2]], cells: &mut [T]) {
-        for (&[column, row], cells) in places.iter().zip(cells.chunks_exact_mut(CELLS)) {
-            match self.tiles.find(column.into(), row.into()) {
-                Some(tile) => cells.copy_from_slice(&self.values[tile * CELLS..][..CELLS]),
-                None => cells.fill(T::default()),
+        for (&place, cells) in places.iter().zip(cells.chunks_exact_mut(CELLS)) {
+            match (self.tiles.find(place[0].into(), place[1].into()), &self.values) {
+                (Some(tile), Some(values)) => cells.copy_from_slice(&values[tile * CELLS..][..CELLS]),
+                (Some(_), None) => (self.set)(&[place], cells),
+                (None, _) => cells.fill(T::default()),
             }
         }
     }

@@ -52,13 +52,11 @@ impl BlockOperator<f32> for TileCorrections<'_> {
 
 impl PreconditionedOperator for TileCorrections<'_> {
     fn set_active(&mut self, active: &[bool]) {
-        let (_, _, room) = self.operator.buffers();
-        self.extension.set_active(active, room);
+        self.extension.set_active(active, self.operator.buffers());
     }
 
     fn precondition(&mut self, active: &[bool], values: &mut [f32]) {
-        let (arch, convolution, room) = self.operator.buffers();
-        self.extension.precondition(arch, (convolution, room), self.preconditioner, active, values);
+        self.extension.precondition(self.operator.buffers(), self.preconditioner, active, values);
     }
 
     fn set_mean(&mut self, eigenvalue: f64) {

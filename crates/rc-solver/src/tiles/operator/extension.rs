@@ -18,8 +18,8 @@ use pulp::Arch;
 use rc_fft::Convolution;
 use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, TILE};
 
-use crate::grid::extension::pyramid::{Extension, of_part};
-use crate::grid::extension::rows::{Parts, Shares};
+use crate::grid::extension::pyramid::Extension;
+use crate::grid::extension::rows::{Parts, Shares, Weight};
 use crate::grid::passes::{read_rows, write_rows};
 use crate::parallel;
 use crate::parallel::Tasks;
@@ -28,20 +28,28 @@ use crate::tiles::operator::hierarchy::Hierarchy;
 use crate::tiles::operator::interpolation::{cells_over, collect, interpolate};
 use crate::tiles::operator::passes::{ShortRange, Targets};
 use crate::tiles::operator::tables::Tables;
-use crate::tiles::operator::tile_operator::{rows_to_tiles, tiles_to_rows};
+use crate::tiles::operator::tile_operator::{Buffers, rows_to_tiles, tiles_to_rows};
 use crate::tiles::operator::tile_values::TileValues;
 use crate::tiles::part::{Part, blocks, own_blocks};
 
 /// Values on the base grid or a level between it and the finest.
 struct Level {
-    /// Factors on means over the finest elements of cells, and on P u. Those of the base grid are in rows.
+    /// The parts of cells that are active. Those of the base grid are in rows.
     parts: Parts,
-    /// Means and u on the way up. On the way down, the values for u.
+    /// Means and u on the way up, then the stencil of w, a pressure. On the way down, the values for u.
     values: Vec<f32>,
     /// Values w. On the way down, the values for the coarser level.
     detail: Vec<f32>,
-    /// The stencil of w, a pressure.
-    pressure: Vec<f32>,
+}
+
+impl Level {
+    /// Takes or gives back the room for values.
+    fn swap(levels: &mut [Self], [values, details]: [&mut [Vec<f32>]; 2]) {
+        for (level, (values, detail)) in levels.iter_mut().zip(values.iter_mut().zip(details)) {
+            std::mem::swap(&mut level.values, values);
+            std::mem::swap(&mut level.detail, detail);
+        }
+    }
 }
 
 /// Values of the extension on one hierarchy.
@@ -59,9 +67,8 @@ impl TileExtension {
     pub(super) fn new(hierarchy: Arc<Hierarchy>) -> Self {
         let sides = hierarchy.base().period();
         let level = |part: &Part| {
-            let n = part.n_cells();
-            let zeros = || vec![0.0; n];
-            Level { parts: Parts::new(n), values: zeros(), detail: zeros(), pressure: zeros() }
+            let parts = Parts::new(part.n_cells(), Weight::OfSquare);
+            Level { parts, values: Vec::new(), detail: Vec::new() }
         };
         let levels = hierarchy.levels[..hierarchy.n_levels()].iter().map(level).collect();
         Self { levels, rows: vec![0.0; sides[0] * sides[1]], coarser: Extension::new(sides), hierarchy }
@@ -69,31 +76,44 @@ impl TileExtension {
 
     /// Prepares the extension for these active elements.
     ///
-    /// `finest` is as for [`TileExtension::precondition`].
-    pub(super) fn set_active(&mut self, active: &[bool], finest: &mut [f32]) {
+    /// The levels have no room for values but during [`TileExtension::precondition`] and this.
+    pub(super) fn set_active(&mut self, active: &[bool], Buffers { finest, mut of_levels, .. }: Buffers<'_, f32>) {
+        self.take_room(&mut of_levels);
         self.take_means(|cell| f32::from(u8::from(active[cell])), finest);
         for (level, Level { parts, values, .. }) in self.levels.iter_mut().enumerate() {
-            parts.set(if level == 0 { &self.rows } else { values }, of_part);
+            parts.set(if level == 0 { &self.rows } else { values });
         }
         self.coarser.set_active(&self.rows, |part| part);
+        Level::swap(&mut self.levels, of_levels);
+    }
+
+    /// Takes the room of another operator for values, which may be on fewer cells.
+    fn take_room(&mut self, of_levels: &mut [&mut [Vec<f32>]; 2]) {
+        for room in &mut *of_levels {
+            for (values, part) in room.iter_mut().zip(&self.hierarchy.levels) {
+                values.resize(values.len().max(part.n_cells()), 0.0);
+            }
+        }
+        let [values, details] = of_levels;
+        Level::swap(&mut self.levels, [values, details]);
     }
 
     /// Computes z = Fᵀ |q|/2 F r.
     ///
-    /// `values` has r on the active elements and zeros elsewhere, and gets z. `finest` has room for the values of the
-    /// finest elements, including those of other ranks that this rank reads.
+    /// `values` has r on the active elements and zeros elsewhere, and gets z.
     pub(super) fn precondition(
         &mut self,
-        arch: Arch,
-        (convolution, finest): (&mut Convolution<f32>, &mut [f32]),
+        Buffers { arch, convolution, finest, mut of_levels }: Buffers<'_, f32>,
         tables: &Tables<f32>,
         active: &[bool],
         values: &mut [f32],
     ) {
+        self.take_room(&mut of_levels);
         self.extend(active, values, finest);
         self.apply_stencils(arch, tables, finest, values);
         self.convolve_base(convolution, tables);
         self.gather(active, values, finest);
+        Level::swap(&mut self.levels, of_levels);
     }
 
     /// Computes means over the cells of all levels, from the values of own elements.
@@ -154,7 +174,7 @@ impl TileExtension {
         for (level, part) in self.hierarchy.levels.iter().enumerate().skip(1) {
             let taps = &tables.levels[level - 1].0;
             let (detail, cells) = match self.levels.get_mut(level) {
-                Some(here) => (&*here.detail, &mut here.pressure[part.own_cells()]),
+                Some(here) => (&*here.detail, &mut here.values[part.own_cells()]),
                 None => (finest, &mut *values),
             };
             let around = TileValues::new(detail, part.tiles());
@@ -196,19 +216,23 @@ impl TileExtension {
             let (here, finer) = self.levels.split_at_mut(level + 1);
             let finer = finer.first().map_or(&*finest, |finer| &finer.detail);
             let finer = TileValues::new(finer, hierarchy.levels[level + 1].tiles());
-            let Level { parts, values, detail, pressure } = &mut here[level];
+            let Level { parts, values, detail } = &mut here[level];
             if level == 0 {
                 set_base(hierarchy, values, |places, cells| collect(finer, places, cells));
                 continue;
             }
             let (part, own) = (&hierarchy.levels[level], hierarchy.levels[level].own_cells());
-            let others = parts.rest[own.clone()].chunks(BLOCK_CELLS).zip(pressure[own.clone()].chunks(BLOCK_CELLS));
-            let blocks = own_blocks(part, values).zip(detail[own].chunks_mut(BLOCK_CELLS)).zip(others);
-            parallel::for_each(blocks, |(((places, values), given), (rest, pressure))| {
-                collect(finer, places, values);
-                for ((value, given), (rest, pressure)) in values.iter_mut().zip(given).zip(rest.iter().zip(pressure)) {
-                    *value += pressure;
-                    *given = rest * *value - pressure;
+            let (active, weight) = parts.of(own.clone());
+            let blocks =
+                own_blocks(part, values).zip(detail[own].chunks_mut(BLOCK_CELLS)).zip(active.chunks(BLOCK_CELLS));
+            parallel::for_each(blocks, |(((places, values), given), active)| {
+                let mut collected = [0.0; BLOCK_CELLS];
+                collect(finer, places, &mut collected);
+                let values = values.iter_mut().zip(given).zip(active.iter().zip(collected));
+                for ((value, given), (&x, collected)) in values {
+                    let pressure = *value;
+                    *value += collected;
+                    *given = weight.rest(x) * *value - pressure;
                 }
             });
             part.exchange(detail);

@@ -3,8 +3,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use rc_quadtree::{BLOCK_TILES, Elements, TILE, TileSet};
+use rc_quadtree::{Elements, TILE, TileSet};
 
+use crate::descent::layout::BlockLayout;
 use crate::tiles::base::Base;
 use crate::tiles::ladder;
 use crate::tiles::ladder::sides_of;
@@ -20,6 +21,8 @@ pub(crate) struct Hierarchy {
     base: Base,
     reach: Reach,
     mesh: Mesh,
+    /// The division of vectors on the mesh into blocks.
+    layout: BlockLayout,
     /// The elements that operators keep values for, on levels that have the operator's period.
     ///
     /// They are those of this rank, and those of other ranks that it reads.
@@ -74,10 +77,11 @@ impl Hierarchy {
         let leaves = pairs.map(|pair| Leaves::new(pair[1].clone(), &pair[0], reach.stencil)).collect();
         let (levels, base_part) = dealt(&levels, &mesh, reach);
         let finest = &levels[levels.len() - 1];
-        let blocks = blocks(&mesh, finest.own().start);
+        let layout = mesh.layout();
+        let blocks = blocks(&mesh, finest.own().start, &layout);
         let tiles = std::iter::once(finest.tiles()).chain(&elements.levels()[1..]);
         let elements = Elements::new(tiles.cloned().collect());
-        Self { base, reach, mesh, elements, blocks, levels, base_part, leaves }
+        Self { base, reach, mesh, layout, elements, blocks, levels, base_part, leaves }
     }
 
     /// The elements that operators keep values for, on levels that have the operator's period.
@@ -85,9 +89,9 @@ impl Hierarchy {
         &self.elements
     }
 
-    /// The elements, and those of them that this rank has.
-    pub(crate) fn mesh(&self) -> &Mesh {
-        &self.mesh
+    /// The division of vectors on the mesh into blocks.
+    pub(crate) fn layout(&self) -> &BlockLayout {
+        &self.layout
     }
 
     /// The range of the own values among those of [`Hierarchy::elements`].
@@ -185,14 +189,11 @@ fn dealt(levels: &[TileSet], mesh: &Mesh, reach: Reach) -> (Vec<Part>, BasePart)
 }
 
 /// The blocks of this rank's vectors. `first` is the index of its first tile of the finest level.
-fn blocks(mesh: &Mesh, first: usize) -> Vec<(usize, Range<usize>)> {
-    let levels = mesh.own_levels().map(|(coarser, places, _)| {
-        let start = if coarser == 0 { first } else { 0 };
-        (coarser, start..start + places.len())
+fn blocks(mesh: &Mesh, first: usize, layout: &BlockLayout) -> Vec<(usize, Range<usize>)> {
+    let tiles = layout.ranges(mesh.n_own()).map(|values| mesh.tiles_of(values));
+    let shifted = tiles.map(|(coarser, tiles, _)| match coarser {
+        0 => (coarser, first + tiles.start..first + tiles.end),
+        _ => (coarser, tiles),
     });
-    let of_level = |(coarser, tiles): (usize, Range<usize>)| {
-        let end = tiles.end;
-        tiles.step_by(BLOCK_TILES).map(move |tile| (coarser, tile..(tile + BLOCK_TILES).min(end)))
-    };
-    levels.flat_map(of_level).collect()
+    shifted.collect()
 }

@@ -9,6 +9,8 @@ use rc_kernel::{PeriodicLove, ScaleSplit, SplitParams};
 use rc_quadtree::{BLOCK_CELLS, CELLS, Elements, TILE, TileSet, quarters};
 
 use crate::descent::operators::{BlockOperator, PreconditionedOperator, read_blocks, write_blocks};
+use crate::descent::stiffness::{stiffness_pressure, stiffness_under};
+use crate::tiles::mesh::Mesh;
 use crate::tiles::operator::corrections::TileCorrections;
 use crate::tiles::operator::hierarchy::Hierarchy;
 use crate::tiles::operator::sizes::Real;
@@ -16,6 +18,7 @@ use crate::tiles::operator::tables::Prepared;
 use crate::tiles::operator::tile_operator::TileOperator;
 use crate::tiles::roughness::roughness;
 use crate::tiles::solid::Solid;
+use crate::tiles::solution::rms_pressure;
 use crate::tiles::split::GapSplit;
 
 /// Radii of spots a few elements of a base grid wide.
@@ -307,5 +310,39 @@ fn on_rough_pressures_the_error_is_in_proportion_to_the_roughness() {
                 assert!(greatest < allowed, "{bound:e}, {base} to {side}: {greatest:e} for {allowed:e}");
             }
         }
+    }
+}
+
+/// The stiffness of the contact under `pressure`, the rms of pressures, and their maximum.
+fn stiffness_and_squares(mesh: &Mesh, pressure: &[f64], [base, side]: [usize; 2]) -> [f64; 3] {
+    let (base, finest) = (Grid::square(base).expect("a grid"), Grid::square(side).expect("a grid"));
+    let quick = ScaleSplit::new(SplitParams::quick());
+    let inverse = Prepared::<f32>::inverse(&quick, base);
+    let displacement = Prepared::<f32>::displacement(&quick, base, 0);
+    let tables = displacement.tables(finest);
+    let hierarchy = Arc::new(Hierarchy::new(base, mesh.clone(), displacement.reach()));
+    let mut inverse = inverse.tables(finest);
+    let n = finest.len() as f64;
+    let x = {
+        let mut operator = TileCorrections::new(Arc::clone(&hierarchy), &tables, &mut inverse);
+        stiffness_pressure(pressure, n, &mut operator, true)
+    };
+    let stiffness = stiffness_under(&x, n, &mut TileOperator::new(hierarchy, &tables));
+    [stiffness, rms_pressure(mesh, pressure), mesh.layout().maximum(pressure, 0.0)]
+}
+
+#[test]
+fn without_the_tiles_out_of_contact_every_digit_is_the_same() {
+    for (sides, seed) in [([32, 128], 3), ([32, 512], 8), ([56, 200], 5)] {
+        let tiles = TileSet::full([sides[1]; 2]).around(0);
+        let pressure = spots(&tiles, [0.02, 0.06], seed);
+        let mesh = Mesh::from(Elements::uniform(tiles));
+        let thin = mesh.thinned(|cells| pressure[cells].iter().any(|p| *p > 0.0)).expect("elements of one size");
+        assert!(thin.n_cells() < mesh.n_cells() / 2 && thin.block_ends().is_some_and(|ends| ends.len() > 3));
+        let of_thin = mesh.moved(&thin, &pressure, 0.0);
+        let [whole, part] =
+            [(&mesh, &pressure), (&thin, &of_thin)].map(|(mesh, p)| stiffness_and_squares(mesh, p, sides));
+        assert!(whole[0] > 0.0);
+        assert_eq!(whole.map(f64::to_bits), part.map(f64::to_bits), "{sides:?}: {whole:?} and {part:?}");
     }
 }

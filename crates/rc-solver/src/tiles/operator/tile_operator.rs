@@ -47,6 +47,16 @@ pub(crate) struct TileOperator<T, B> {
     tails: Vec<(TileRows, Vec<T>)>,
 }
 
+/// What another operator on the base grid and the elements may use and change between two applications.
+pub(crate) struct Buffers<'a, T> {
+    pub(crate) arch: Arch,
+    pub(crate) convolution: &'a mut Convolution<T>,
+    /// Room for values of the finest elements, including those of other ranks that this rank reads.
+    pub(crate) finest: &'a mut [T],
+    /// Room for two values of each cell of the levels below the finest. It may be made larger.
+    pub(crate) of_levels: [&'a mut [Vec<T>]; 2],
+}
+
 impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
     /// The operator with the `tables` of the levels of `hierarchy`.
     ///
@@ -88,10 +98,10 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
 
     /// Buffers that another operator on the base grid and the elements may use and change.
     ///
-    /// They are the vector instructions, the convolution, and room for a vector.
-    pub(crate) fn buffers(&mut self) -> (Arch, &mut Convolution<T>, &mut [T]) {
+    pub(crate) fn buffers(&mut self) -> Buffers<'_, T> {
         self.reserve();
-        (self.arch, &mut self.convolution, &mut self.source)
+        let Self { arch, convolution, source: finest, densities, displacements, .. } = self;
+        Buffers { arch: *arch, convolution, finest, of_levels: [densities, displacements] }
     }
 
     /// The base grid.
@@ -245,13 +255,13 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
 
 impl<T: Real, B: Borrow<Tables<T>> + Sync> BlockOperator<T> for TileOperator<T, B> {
     fn layout(&self) -> BlockLayout {
-        self.hierarchy.mesh().layout()
+        self.hierarchy.layout().clone()
     }
 
     fn write(&mut self, write: &(dyn Fn(usize, &mut [T]) + Sync)) {
         self.reserve();
         let own = &mut self.source[self.hierarchy.own_values()];
-        parallel::for_each(own.chunks_mut(BLOCK_CELLS).enumerate(), |(i, cells)| write(i, cells));
+        parallel::for_each(self.hierarchy.layout().chunks_mut(own).enumerate(), |(i, cells)| write(i, cells));
     }
 
     /// Applies the tables, except for the part of the elements' own level, which [`BlockOperator::read`] adds.
@@ -277,7 +287,7 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> BlockOperator<T> for TileOperator<T, 
             }
             self.add_ghosts(*coarser, tiles.clone(), cells);
             // Values that fill up the last block of a level have no displacement.
-            read(i, &block[..(n_own - i * BLOCK_CELLS).min(BLOCK_CELLS)]);
+            read(i, &block[..self.hierarchy.layout().range(i, n_own).len()]);
         });
     }
 
