@@ -49,7 +49,7 @@ pub(super) struct StepRow {
 /// # Errors
 /// When a solve fails or a file cannot be written.
 #[expect(clippy::print_stdout, reason = "the result of the command")]
-pub fn measure(archive: bool) -> Result<()> {
+pub(super) fn measure(archive: bool) -> Result<()> {
     let bandwidth = bandwidth();
     let mut rows = Vec::new();
     for (scene, elements_per_wave) in CASES {

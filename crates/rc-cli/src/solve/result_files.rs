@@ -274,7 +274,9 @@ fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'
             file.finish()
         })?;
     }
-    if keys.elements && solution.elements().is_some() {
+    // An element has one side.
+    let has_squares = (grid.spacing().x / grid.spacing().y - 1.0).abs() < 1e-9;
+    if keys.elements && (has_squares || solution.elements().is_some()) {
         staged.add("elements.csv", |path| write_elements(path, solution, units))?;
     }
     let mut picture = ContactRows::new(grid);
@@ -293,9 +295,19 @@ fn add_fields(staged: &mut Staged, contact: &ContactSetup, solution: &Solution<'
 fn write_elements(path: &Path, solution: &Solution<'_>, units: Units) -> Result<(), csv::Error> {
     let mut out = csv::Writer::from_path(path)?;
     out.write_record(["x", "y", "size", "pressure"])?;
-    solution.each_element(|ContactElement { centre: DVec2 { x, y }, side, pressure }| {
+    let mut write = |ContactElement { centre: DVec2 { x, y }, side, pressure }| {
         out.serialize((units.metres(x), units.metres(y), units.metres(side), units.pascals(pressure)))
-    })?;
+    };
+    if solution.elements().is_some() {
+        solution.each_element(&mut write)?;
+    } else {
+        // The elements of a method without a mesh are those of the grid.
+        let (grid, pressure) = (solution.grid(), solution.pressure().values());
+        for (i, &pressure) in pressure.iter().enumerate().filter(|&(_, &pressure)| pressure > 0.0) {
+            let centre = grid.centre(i % grid.nx(), i / grid.nx());
+            write(ContactElement { centre, side: grid.spacing().x, pressure })?;
+        }
+    }
     out.flush()?;
     Ok(())
 }

@@ -297,6 +297,25 @@ fn border_levels_that_cannot_be_are_refused() {
     refused(&["--border-level", "11"], "10 is the deepest");
     refused(&["--border-level", "99999999999"], "10 is the deepest");
     place.write("map.npy", npy("<f8", false, "(128, 128)", &f8(&bumps(128))));
-    let output = place.run(&map("solve", "map.npy", &["--pressure", PRESSURE, "--border-level", "1"]));
-    assert_refused(&output, "border_level: a border level cannot be combined with a height map");
+    let output =
+        place.run(&map("solve", "map.npy", &["--pressure", PRESSURE, "--border-level", "1", "--cell-y", "0.02"]));
+    assert_eq!(output.status.code(), Some(2));
+    let refusal = "border_level: a border level cannot be combined with a height map: between the points of a map";
+    assert!(text(&output.stderr).contains(refusal), "{}", text(&output.stderr));
+}
+
+#[test]
+fn border_levels_of_a_map_have_bicubic_heights_between_its_points() {
+    let place = Place::new();
+    let surface = ["--waves", "8", "--grid", "128"];
+    assert_solved(&place.run(&[&["surface"], &surface[..], &["--out", "s", "--quiet"]].concat()));
+    let more = ["--pressure", PRESSURE, "--e-star", "5e8", "--border-level", "2", "--json"];
+    let of_waves = summary_of(&place.run(&[&["solve"], &surface[..], &more].concat()));
+    let output = place.run(&[&["solve", "s/heights.npy", "--cell", "0.01"], &more[..]].concat());
+    assert!(text(&output.stderr).contains("assumed: bicubic heights between the points of the map"), "{output:?}");
+    let of_map = summary_of(&output);
+    assert_eq!((&of_map["method"], &of_map["border_level"]), (&"adaptive".into(), &2.into()));
+    for key in ["area_fraction", "rms_pressure", "mean_gap"] {
+        assert_close(key, number(&of_map, key), number(&of_waves, key), 2e-3);
+    }
 }

@@ -95,8 +95,6 @@ fn all_forms_of_a_material_are_one() {
     assert!(told.contains("10 mm/s along 0°, over a solid of 2 relaxation times and the glassy ratio 10"), "{told}");
     // The longest wave has ωτ of 0.00628 and 0.628, so E'' and E' are 2.721 and 2.697 times the relaxed modulus.
     assert!(told.contains(", loss tangent up to 1.01"), "{told}");
-    // The squares of such frequencies are not finite.
-    assert_solved(&run(&place, &format!("solve {SOFT} --pressure 2kPa --speed 1e300 --prony rubber.csv --quiet")));
     let fast = run(&place, &format!("solve {SOFT} --pressure 2kPa --speed 1e6 --prony rubber.csv"));
     let glassy = "note: at this speed the solid is nearly glassy along the sliding direction, with E* = 39.48 MPa";
     assert!(text(&fast.stderr).contains(glassy), "{fast:?}");

@@ -79,8 +79,7 @@ fn a_patch_has_a_result_like_any_other() {
     assert!(text(&solved.stdout).contains("mean displacement"), "{}", text(&solved.stdout));
     let found = place.json("patch/summary.json");
     let reason = found["method_reason"].as_str().expect("a reason");
-    let is_scattered = reason.starts_with("uniform: ") && reason.contains("would be near contact");
-    assert!(is_scattered, "bumps are as scattered as in a cell: {reason}");
+    assert!(reason.starts_with("uniform: it is cheaper on this grid"), "{reason}");
     let [pressure, gap] = ["pressure", "gap"]
         .map(|name| rc_heights::npy::read(&place.path(&format!("patch/{name}.npy"))).expect("a field"));
     assert_close("load", pressure.mean(), 2e6, 1e-10);

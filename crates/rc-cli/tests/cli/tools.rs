@@ -94,7 +94,7 @@ fn means_over_blocks_are_plotted_as_touched() {
 #[test]
 fn summaries_without_the_newer_keys_are_read() {
     let place = Place::new();
-    assert_solved(&place.run(&small("1e5", &["--out", "r"])));
+    assert_solved(&place.run(&small("1e5", &["--method", "adaptive", "--out", "r"])));
     let mut summary = place.json("r/summary.json");
     let keys = summary.as_object_mut().expect("an object");
     for key in ["method_reason", "tolerance", "cells_evaluated", "cells_proven", "level_iterations"] {

@@ -167,7 +167,7 @@ const PAIRS: [(Feature, Feature, &str); 62] = [
     (
         BorderLevel,
         HeightMap,
-        "a map has no heights between its points (interpolate a square map, as rc_heights::Bicubic does)",
+        "between the points of a map in a rectangular cell there are no heights (those of a square map are bicubic)",
     ),
     (
         FluidPressure,
