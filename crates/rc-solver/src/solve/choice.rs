@@ -91,7 +91,8 @@ impl<'a> Choice<'a, '_> {
         if let Some(refusal) = only {
             return Ok((adaptive, MethodReason::Only { method: Method::Adaptive, refusal }));
         }
-        if estimate.relative_time <= 1.0 {
+        // Only the adaptive method runs on several ranks.
+        if estimate.relative_time <= 1.0 || self.features.contains(&Feature::Ranks) {
             return Ok((adaptive, MethodReason::SmallContact { percent }));
         }
         match self.on_grid(Method::Uniform) {

@@ -8,7 +8,7 @@ use rc_solver::{Control, Method, MethodReason, SolveError, SolveParams, Toleranc
 /// The error of the operator on noise is 2e-4 of the pressure. The uniform operator has none.
 #[test]
 fn what_the_adaptive_method_cannot_certify_is_solved_by_the_uniform_one() {
-    let grid = Grid::square(128).expect("a grid");
+    let grid = Grid::square(384).expect("a grid");
     let mut values = ChaCha8Rng::seed_from_u64(2);
     let heights = Field::from_fn(grid, |_| 0.01 * (values.random::<f64>() - 0.5));
     let load = Control::MeanPressure(2e-4);
