@@ -54,7 +54,7 @@ def test_a_loop_of_a_flow_and_a_contact_converges():
         (np.zeros((32, 64)), "fluid_pressure: 64 x 32 values, but the solve has 64 x 64 elements"),
         (-fluid(1.0), "fluid_pressure: row 0, column 0 .* at least 0"),
         (fluid(np.nan), "fluid_pressure: row 0, column 0 .* is NaN"),
-        (fluid(2e6), "fluid_pressure: its mean, 2000000 Pa, already bears"),
+        (fluid(2e6), "fluid_pressure: its mean, 2.000000e6 Pa, already bears"),
         (np.zeros(64), "fluid_pressure: must be a 2-D array"),
     ],
 )

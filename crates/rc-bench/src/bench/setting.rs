@@ -81,7 +81,7 @@ impl Setting {
 
     /// Elements of the border for the shortest wave.
     pub(super) fn smallest(&self) -> f64 {
-        self.elements_per_wave * (1 << self.border_level) as f64
+        self.elements_per_wave * (self.border_level as f64).exp2()
     }
 
     /// Every setting on one mesh of a scene, without those that have too many elements.
