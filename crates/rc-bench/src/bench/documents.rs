@@ -131,14 +131,13 @@ mod tests {
             let ratios = PEERS.into_iter().filter_map(|kind| results.peer(kind.name, asked).1);
             ratios.map(|ratio| ratio.value).reduce(f64::min).unwrap_or(f64::NAN)
         };
-        // What rc does not state, or states later.
-        let finest = (Quantity::RmsPressure, 1e-4);
-        assert_eq!((results.ours(finest).n, results.peer(ASPHER.name, finest).0.n), (0, 9));
+        // What rc states hardly sooner.
         let (loose, gap) = ((Quantity::Area, 3e-3), (Quantity::MeanGap, 1e-4));
-        let later: Vec<_> = LEVELS.into_iter().filter(|&asked| ratio(asked) < 1.0).collect();
-        assert_eq!(later, [loose, gap]);
+        assert!(LEVELS.into_iter().all(|asked| ratio(asked) > 1.0), "a peer is ahead");
+        let hardly: Vec<_> = LEVELS.into_iter().filter(|&asked| ratio(asked) < 1.3).collect();
+        assert_eq!(hardly, [loose, gap]);
         let aspher = results.peer(ASPHER.name, loose).0;
-        assert_eq!((aspher.reading, aspher.n - aspher.n_true), (Reading::Published, 8));
+        assert_eq!((aspher.reading, aspher.n - aspher.n_true), (Reading::Published, 9));
         // Equal meshes.
         let ahead = |method, kernel| {
             let meshes = ["paper", "heavy"].into_iter().flat_map(|scene| EQUAL_MESHES.map(|mesh| (scene, mesh)));
@@ -149,15 +148,15 @@ mod tests {
             };
             meshes.filter(is_ahead).collect::<Vec<_>>()
         };
-        assert_eq!(ahead("adaptive", "love"), [("paper", 8.0), ("heavy", 8.0), ("heavy", 16.0)]);
-        assert_eq!(ahead("uniform", "spectral"), [("heavy", 4.0)]);
+        assert_eq!(ahead("adaptive", "love"), [("heavy", 8.0)]);
+        assert_eq!(ahead("uniform", "spectral"), []);
         // The paper.
         let paper = sources["docs/paper/paper.md"].split_whitespace().collect::<Vec<_>>().join(" ");
         let area = (Quantity::Area, 1e-3);
         let [gap, pressure] = [Quantity::MeanGap, Quantity::RmsPressure].map(|quantity| ratio((quantity, 1e-3)));
         for sentence in [
             format!("over ten problems is {:.0} ms", 1e3 * results.ours(area).seconds),
-            format!("needs {:.0} times as long", ratio(area)),
+            format!("needs {:.1} times as long", ratio(area)),
             format!("these ratios are {gap:.1} and {pressure:.1}"),
         ] {
             assert!(paper.contains(&sentence), "docs/paper/paper.md does not say '{sentence}'");
