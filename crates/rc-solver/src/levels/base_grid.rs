@@ -29,6 +29,11 @@ const SMALLEST_WIDTH: usize = 16;
 /// keep 0.41.
 const SLOPE_KEPT: f64 = 0.8;
 
+/// Maximum spacing of a map's base grid, in elements of the map: three levels above it.
+///
+/// The error of the operators grows with each level, and iterations with it: `docs/constants.md`.
+const MOST_SPACING: usize = 8;
+
 /// Checks or chooses the sides of the base grid, in elements.
 ///
 /// If the elements along x are `wanted`, those along y are in proportion.
@@ -133,13 +138,13 @@ fn wanted_sides(base: usize, waves: usize, [nx, ny]: [usize; 2]) -> Option<[usiz
 
 /// Number of elements along the longer side that keeps the slopes of a map.
 ///
-/// The spacing is a power of two.
+/// The spacing is a power of two, up to [`MOST_SPACING`].
 fn smooth_side(map: &Field, boundary: Boundary) -> usize {
     let sides = sides_of(map.grid());
     let finest = mean_square_slope(map, 1, boundary);
     let mut spacing = 1;
     let is_kept = |spacing| mean_square_slope(map, spacing, boundary) >= SLOPE_KEPT * finest;
-    while 4 * spacing <= sides[0].min(sides[1]) && is_kept(2 * spacing) {
+    while spacing < MOST_SPACING && 4 * spacing <= sides[0].min(sides[1]) && is_kept(2 * spacing) {
         spacing *= 2;
     }
     sides[0].max(sides[1]) / spacing
@@ -263,7 +268,7 @@ mod tests {
         let base = |map: &Field, boundary| base_sides(&HeightSource::Map(map), None, boundary).ok();
         assert_eq!(base(&grooves(true), Boundary::Periodic), Some([256; 2]));
         assert_eq!(base(&grooves(false), Boundary::Periodic), Some([256; 2]));
-        for (map, expected) in [(wave(8.0), 64), (wave(30.0), 128), (wave(100.0), 256), (noise, 256), (with_pit, 256)] {
+        for (map, expected) in [(wave(8.0), 128), (wave(30.0), 128), (wave(100.0), 256), (noise, 256), (with_pit, 256)] {
             assert_eq!(base(&map, Boundary::Periodic), Some([expected; 2]));
         }
         // A slope that does not meet itself across the border is as steep as its wave and a jump.
@@ -271,7 +276,7 @@ mod tests {
         for (i, h) in tilted.values_mut().iter_mut().enumerate() {
             *h += 0.1 * (i % 1024) as f64;
         }
-        assert_eq!(base(&tilted, Boundary::Free), Some([64; 2]));
+        assert_eq!(base(&tilted, Boundary::Free), Some([128; 2]));
         assert_eq!(base(&tilted, Boundary::Periodic), Some([256; 2]));
     }
 }
