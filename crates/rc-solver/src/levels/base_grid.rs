@@ -268,7 +268,8 @@ mod tests {
         let base = |map: &Field, boundary| base_sides(&HeightSource::Map(map), None, boundary).ok();
         assert_eq!(base(&grooves(true), Boundary::Periodic), Some([256; 2]));
         assert_eq!(base(&grooves(false), Boundary::Periodic), Some([256; 2]));
-        for (map, expected) in [(wave(8.0), 128), (wave(30.0), 128), (wave(100.0), 256), (noise, 256), (with_pit, 256)] {
+        for (map, expected) in [(wave(8.0), 128), (wave(30.0), 128), (wave(100.0), 256), (noise, 256), (with_pit, 256)]
+        {
             assert_eq!(base(&map, Boundary::Periodic), Some([expected; 2]));
         }
         // A slope that does not meet itself across the border is as steep as its wave and a jump.
