@@ -13,9 +13,8 @@ use crate::descent::sums::GapSums;
 use crate::levels::operator_error::{OperatorError, PressureScale};
 use crate::levels::tiles::TileLevels;
 use crate::parallel;
-use crate::problem::control::Control;
 use crate::problem::steps::Step;
-use crate::tiles::element_heights::{block_heights, element_heights};
+use crate::tiles::element_heights::block_heights;
 use crate::tiles::gap_operator::{GapTables, PreparedGap};
 use crate::tiles::mesh::Mesh;
 use crate::tiles::prolongation::MeshStart;
@@ -41,8 +40,6 @@ pub(super) struct Evaluated<'e, 'a> {
     pub(super) grid: Grid,
     /// The candidates.
     pub(super) elements: &'e Mesh,
-    /// Heights of some elements.
-    pub(super) known: Option<(&'e Mesh, &'e [f64])>,
     pub(super) current: &'e MeshStart,
 }
 
@@ -54,8 +51,7 @@ impl Evaluated<'_, '_> {
         let Self { levels, elements, current, .. } = *self;
         let (problem, offset) = (&levels.problem, levels.problem.offset());
         let mut operator = levels.operator(levels.hierarchy(elements, prepared.reach()), tables, current);
-        let (mut pressed, all) = (self.on_all_elements(), self.all_heights());
-        let known = all.as_ref().map_or(self.known, |all| Some((elements, &**all)));
+        let mut pressed = self.on_all_elements();
         let given = pressed.as_ref().unwrap_or(current);
         let (layout, mut gap) = (elements.layout(), vec![0.0; elements.n_own()]);
         let running = Step::FreshGaps.begin();
@@ -66,14 +62,14 @@ impl Evaluated<'_, '_> {
         let empty = GapSums::empty(f64::INFINITY, problem.bounds.hardness);
         let blocks = layout.ranges(gap.len()).zip(layout.chunks_mut(&mut gap));
         let read = read_blocks(&*operator, blocks, |block, displacement| {
-            self.pass((known, given), block, offset, |values| values.fresh_gap(displacement, offset, empty))
+            self.pass(given, block, offset, |values| values.fresh_gap(displacement, offset, empty))
         });
         drop(running);
         let base = operator.base_displacement();
         drop(operator);
         let again = |gap: &mut [f64], shift: f64, change: &(dyn Fn(ElementValues<'_>) -> GapSums + Sync)| {
             let blocks = layout.ranges(gap.len()).zip(layout.chunks_mut(gap));
-            self.total(parallel::map(blocks, |block| self.pass((known, given), block, shift, change)))
+            self.total(parallel::map(blocks, |block| self.pass(given, block, shift, change)))
         };
         let (mut sums, mut size) = self.total(read);
         let scaling = sums.scale_to_penetration(problem);
@@ -117,22 +113,10 @@ impl Evaluated<'_, '_> {
         Some(MeshStart { elements: elements.clone(), pressure })
     }
 
-    /// The heights of all candidates, if they are needed more than once and are not all known.
-    fn all_heights(&self) -> Option<Vec<f64>> {
-        let Self { levels, elements, known, .. } = *self;
-        let problem = &levels.problem;
-        let is_scaled = matches!(problem.bounds.control, Control::Penetration(_));
-        let is_again = is_scaled || problem.support.compliance > 0.0;
-        if !is_again || known.is_some_and(|(known, _)| known.n_own() == elements.n_own()) {
-            return None;
-        }
-        Some(element_heights(&levels.data.heights, elements, known, out_of_reach(levels, elements)))
-    }
-
     /// Changes a block of the gap. Returns its sums, and the maximum of |g + h - `shift`|.
     fn pass(
         &self,
-        (known, given): (Option<(&Mesh, &[f64])>, &MeshStart),
+        given: &MeshStart,
         (block, gap): (Range<usize>, &mut [f64]),
         shift: f64,
         change: impl Fn(ElementValues<'_>) -> GapSums,
@@ -141,7 +125,7 @@ impl Evaluated<'_, '_> {
         let mut room = [[0.0; BLOCK_CELLS]; 2];
         let [heights, pressure] = room.each_mut().map(|room| &mut room[..gap.len()]);
         heights.fill(out_of_reach(levels, elements));
-        block_heights(&levels.data.heights, (elements, block.clone()), known, heights);
+        block_heights(&levels.data.heights, (elements, block.clone()), heights);
         set_pressure(elements, block, given, pressure);
         let sums = change(ElementValues { heights, pressure, gap: &mut *gap });
         let sizes = heights.iter().zip(gap).map(|(h, g)| (*g + (h - shift)).abs());

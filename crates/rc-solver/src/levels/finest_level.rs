@@ -119,8 +119,6 @@ struct FinestLevel<'s, 'a> {
     tables: OperatorTables,
     /// Elements where contact is possible.
     candidates: Mesh,
-    /// Elements whose heights are known, with these heights.
-    known: Option<(Mesh, Vec<f64>)>,
     /// The pressure of the last descent, or the start before the first descent.
     current: MeshStart,
     info: LevelInfo,
@@ -144,16 +142,16 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         };
         let candidates = first_candidates(levels, &start, &tables.quick, contact_gap);
         let info = LevelInfo { grid, iterations: 0, operator_applications: 0, preconditioner_applications: 0 };
-        Self { levels, tables, candidates, known: None, current: start, info, work: Work::default() }
+        Self { levels, tables, candidates, current: start, info, work: Work::default() }
     }
 
     /// Improves the pressure on the elements near contact. Returns whether it reached the tolerance there.
     ///
     /// Fresh gaps come from the operator for certificates if `certify`. The first round uses the operator for descents.
     fn improve(self, evaluation: Evaluation, certify: bool, observer: &dyn Observer) -> (Self, bool) {
-        let Self { levels, mut tables, candidates, known, current, mut info, mut work } = self;
+        let Self { levels, mut tables, candidates, current, mut info, mut work } = self;
         let tolerance = evaluation.error.goal(levels.params.solve.bound, &levels.problem);
-        let near = NearContact::choose((&candidates, known), &current, evaluation, levels);
+        let near = NearContact::choose(&candidates, &current, evaluation, levels);
         let hierarchy = levels.hierarchy(&near.elements, levels.data.kernels.quick().reach());
         let (prepared, fresh) = tables.gaps.choose(levels, certify);
         let fresh_hierarchy = levels.hierarchy(&near.elements, prepared.reach());
@@ -184,25 +182,21 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
         add_work(&mut info, &descent.info());
         work = work.plus(descent.work());
         let pressure = descent.into_descent().into_pressure();
-        let known = Some((near.elements.clone(), near.heights));
         let current = MeshStart { elements: near.elements, pressure };
-        (Self { levels, tables, candidates, known, current, info, work }, reached)
+        (Self { levels, tables, candidates, current, info, work }, reached)
     }
 
     /// The gap on all candidates, and the displacement of the base grid.
     ///
     /// They come from the operator for certificates if `certify`, otherwise from the one for descents.
     fn evaluate(&self, certify: bool) -> (Evaluation, Vec<f64>) {
-        let Self { levels, tables, candidates, known, current, info, .. } = self;
-        let known = known.as_ref().map(|(mesh, heights)| (mesh, &**heights));
-        let evaluated = Evaluated { levels, grid: info.grid, elements: candidates, known, current };
+        let Self { levels, tables, candidates, current, info, .. } = self;
+        let evaluated = Evaluated { levels, grid: info.grid, elements: candidates, current };
         evaluated.evaluate(tables.gaps.choose(levels, certify))
     }
 
-    /// The gap on all candidates, whose heights are kept for the choice of those near contact.
+    /// The gap on all candidates, for the choice of those near contact.
     fn evaluate_candidates(&mut self) -> Evaluation {
-        let heights = candidate_heights(self.levels, &self.candidates, None);
-        self.known = Some((self.candidates.clone(), heights));
         self.info.operator_applications += 1;
         self.evaluate(false).0
     }
@@ -246,19 +240,13 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
     }
 
     fn into_solved(self, evaluation: Evaluation) -> (SolvedLevel, PressureScale) {
-        let Self { candidates: elements, known, current, info, work, .. } = self;
-        drop(known);
+        let Self { candidates: elements, current, info, work, .. } = self;
         let Evaluation { pressed, gap, outcome, scale, .. } = evaluation;
         let MeshStart { elements: pressing, pressure } = pressed.unwrap_or(current);
         let pressure = pressing.moved(&elements, &pressure, 0.0);
         let (evaluated, covered) = (elements.n_cells(), elements.n_finest());
         (SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, info, work }, scale)
     }
-}
-
-/// The heights of `elements`, of which some may be `known`.
-fn candidate_heights(levels: &TileLevels<'_>, elements: &Mesh, known: Option<(&Mesh, &[f64])>) -> Vec<f64> {
-    element_heights(&levels.data.heights, elements, known, out_of_reach(levels, elements))
 }
 
 /// Elements where the start may touch according to the quick operator.
@@ -291,13 +279,8 @@ struct NearContact {
 impl NearContact {
     /// Chooses the candidates near contact, among which are those of the last descent.
     ///
-    /// Some heights are `known`. `current` is the pressure that was evaluated.
-    fn choose(
-        (candidates, known): (&Mesh, Option<(Mesh, Vec<f64>)>),
-        current: &MeshStart,
-        evaluation: Evaluation,
-        levels: &TileLevels<'_>,
-    ) -> Self {
+    /// `current` is the pressure that was evaluated.
+    fn choose(candidates: &Mesh, current: &MeshStart, evaluation: Evaluation, levels: &TileLevels<'_>) -> Self {
         let Evaluation { pressed, gap, outcome, .. } = evaluation;
         // Elements that are nearer to contact than the error may still come into contact.
         let error = match outcome.mean_pressure {
@@ -315,13 +298,12 @@ impl NearContact {
         };
         let elements = candidates.chosen(is_near);
         // The vectors are moved one after the other. Nothing presses on values that fill up a level.
-        let heights = candidate_heights(levels, &elements, known.as_ref().map(|(mesh, heights)| (mesh, &**heights)));
-        drop(known);
         let lowest = out_of_reach(levels, &elements);
         let moved_gap = candidates.moved(&elements, &gap, levels.problem.offset() - lowest);
         drop(gap);
         let MeshStart { elements: pressing, pressure } = pressed.as_ref().unwrap_or(current);
         let pressure = pressing.moved(&elements, pressure, 0.0);
+        let heights = element_heights(&levels.data.heights, &elements, lowest);
         Self { elements, heights, pressure, gap: moved_gap }
     }
 }
