@@ -10,7 +10,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use rayon::prelude::*;
 
 /// Values in a block, unless something else decides.
-const BLOCK: usize = 4096;
+pub(crate) const BLOCK: usize = 4096;
 
 /// Calls `work` once for each index below `n`, in any order.
 pub(crate) fn for_each_index(n: usize, work: &(dyn Fn(usize) + Sync)) {

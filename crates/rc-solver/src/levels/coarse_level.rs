@@ -75,7 +75,7 @@ pub(crate) fn solve_coarse_level(
     };
     let MeshStart { elements, pressure } = start;
     let heights = element_heights(&levels.data.heights, &elements, levels.problem.out_of_reach(grid.len()));
-    let descent = Descent::new(&heights, grid, operators, &levels.problem, Start::Pressure(pressure));
+    let descent = Descent::new(&*heights, grid, operators, &levels.problem, Start::Pressure(pressure));
     let mut descent = TileDescent::new(descent, storage);
     let outcome = descent.run(goal, &DescentObserver { observer, mesh: &elements });
     let (info, work) = (descent.info(), descent.work());
