@@ -19,19 +19,23 @@ pub(crate) const BLOCK: usize = 4096;
 /// went there: from inside, it takes a third. There is one such work at a time, because a thread that waits inside it for
 /// another one may take up whatever the pool is given: a second solve would stand on the stack of the first, and so on.
 pub(crate) fn in_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
-    static IS_TAKEN: AtomicBool = AtomicBool::new(false);
     if rayon::current_thread_index().is_some() || IS_TAKEN.swap(true, Ordering::Acquire) {
         return work();
     }
-    // A panic frees it too.
-    struct Taken;
-    impl Drop for Taken {
-        fn drop(&mut self) {
-            IS_TAKEN.store(false, Ordering::Release);
-        }
-    }
     let _taken = Taken;
     rayon::scope(|_| work())
+}
+
+/// Whether a work is in the pool.
+static IS_TAKEN: AtomicBool = AtomicBool::new(false);
+
+/// Its end, also by a panic, which lets the next one in.
+struct Taken;
+
+impl Drop for Taken {
+    fn drop(&mut self) {
+        IS_TAKEN.store(false, Ordering::Release);
+    }
 }
 
 /// Calls `work` once for each index below `n`, in any order.
