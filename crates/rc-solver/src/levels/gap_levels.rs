@@ -1,9 +1,9 @@
 //! Nearly full contact: the finest grids are solved for their gap.
 //!
 //! The grid below them is solved by rounds, as all coarser ones. It shows whether the contact is nearly full and its
-//! pools are narrow, because steps near pools do not correct long waves. A solution is accepted only if its bound is far below
-//! the tolerance, because a bound on the energy alone does not bound the area. Otherwise rounds go on from the grid
-//! below, as if nothing had been tried.
+//! pools are narrow, because steps near pools do not correct long waves. A solution is accepted only if its bound is
+//! far below the tolerance, because a bound on the energy alone does not bound the area. Otherwise rounds go on from the
+//! grid below, as if nothing had been tried.
 
 use rc_core::{Boundary, Kernel};
 use rc_quadtree::TILE;
