@@ -31,6 +31,8 @@ pub enum MethodReason {
         /// Estimated contact area, in percent of the nominal one.
         percent: f64,
     },
+    /// The contact is nearly full, and the uniform grid was solved for its gap.
+    NearlyFull,
     /// Contact is so scattered that the uniform grid is the cheaper one.
     ///
     /// The adaptive method finds this on its base grid, a coarse grid that it stores in full.
@@ -85,6 +87,7 @@ impl fmt::Display for MethodReason {
                     round(percent)
                 )
             }
+            Self::NearlyFull => write!(f, "uniform, from the gaps: the contact is nearly full"),
             Self::ScatteredContact { percent } => {
                 write!(f, "uniform: it is cheaper because {} % of the cell would be near contact", round(percent))
             }
