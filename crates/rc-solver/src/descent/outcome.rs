@@ -25,7 +25,7 @@ pub(crate) struct Outcome {
 /// Largest relative error of area and rms pressure, in units of such a bound on the error of the pressure.
 ///
 /// Measured up to 0.28 for areas and 0.04 for rms pressures (32 scenes, 80 % to 99 % contact, H = 0.4 and 0.8).
-const OF_OBSERVABLES: f64 = 0.3;
+pub(crate) const OF_OBSERVABLES: f64 = 0.3;
 
 impl Outcome {
     /// The outcome from sums over all elements that may be in contact.

@@ -6,8 +6,7 @@
 //! p(g) = σ0 + K (h + g),        p ≥ 0,  g ≥ 0,  g p = 0.
 //! ```
 //!
-//! The gap is interpolated from the coarser grid, and a few steps near the pools correct it ([`crate::levels::gap_sweeps`]).
-//! One application of K in double precision then gives p(g). Setting it to zero in the pools and where it is negative,
+//! The gap is interpolated from the coarser grid, and cycles correct it ([`crate::levels::gap_cycle`]). One application of K in double precision then gives p(g). Setting it to zero in the pools and where it is negative,
 //! and restoring the load nearby, makes a pressure p̂ that is admissible. With x = p̂ - p(g), the gap of p̂ is g + L x up to
 //! a constant, and the exact pressure p* and gap g* obey
 //!
@@ -20,23 +19,16 @@
 
 use std::ops::Range;
 
-use rc_core::{Field, Grid, Kernel};
+use rc_core::{Field, Grid};
 use rc_fft::{BLOCK_ROWS, Convolution};
-use rc_quadtree::TILE;
 
 use crate::descent::rows::ElementValues;
 use crate::descent::sums::GapSums;
 use crate::grid::passes::{layout, read_rows, write_rows};
 use crate::grid::response::GridResponse;
-use crate::levels::gap_sweeps::{NearKernel, Pools};
+use crate::levels::gap_cycle::{GapGrid, cycle};
 use crate::parallel::Tasks;
 use crate::problem::checked::Problem;
-
-/// Applications of L and of K.
-pub(super) const APPLICATIONS: usize = 3;
-
-/// Elements of pools reach this far for the tiles that steps change.
-const MARGIN: usize = 2;
 
 /// Elements along a row of the pieces of blocks that keep their load.
 ///
@@ -61,23 +53,63 @@ pub(super) struct GapSolution {
     pub(super) sums: GapSums,
     /// Bound on ⟨p̂ - p*, L (p̂ - p*)⟩.
     pub(super) error: f64,
+    /// Number of applications of L and K on the grid.
+    pub(super) applications: usize,
 }
 
-/// The solution on a grid that follows from a `gap` interpolated to it.
+/// When cycles end.
+#[derive(Clone, Copy)]
+pub(super) struct Goal {
+    /// The error of the pressure in the energy norm, in units of √U.
+    pub(super) error: f64,
+    /// Number of cycles before the error is looked at.
+    pub(super) cycles: usize,
+}
+
+/// Maximum number of cycles.
+const MAX_CYCLES: usize = 5;
+
+/// Ratio of the errors before and after a cycle above which there is no other one.
+const LEAST_FALL: f64 = 0.5;
+
+/// The solution on the first of `grids` that follows from a `gap` interpolated to it.
+///
+/// Cycles go on until the error is within the goal, or no longer falls.
 pub(super) fn solve(
     gap: Vec<f64>,
     heights: &Field,
-    (kernel, response): (&dyn Kernel, &GridResponse),
-    (problem, mean): (&Problem, f64),
+    (grids, response): (&mut [GapGrid], &GridResponse),
+    (problem, mean, goal): (&Problem, f64, Goal),
 ) -> GapSolution {
-    let grid = heights.grid();
+    let (grid, h_mean) = (heights.grid(), problem.h_mean);
     let mut side = GapSide { grid, heights: heights.values(), problem, mean, pressure: vec![0.0; grid.len()], gap };
-    let mut quick = Convolution::new(grid);
-    side.improve(&mut quick, kernel, response);
-    let pieces = side.fresh(response);
-    let (error, sums) = side.make_admissible(&mut quick, response, &pieces);
-    let GapSide { pressure, gap, .. } = side;
-    GapSolution { pressure, gap, sums, error }
+    let shape = |at: usize| side.heights[at] - h_mean + side.gap[at];
+    grids[0].pressure_under(mean, shape, &mut side.pressure);
+    cycle(grids, &mut side.gap, &mut side.pressure);
+    let (mut applications, mut n_cycles, mut last) = (2, 1, f64::INFINITY);
+    loop {
+        if n_cycles < goal.cycles {
+            let shape = |at: usize| side.heights[at] - h_mean + side.gap[at];
+            grids[0].pressure_under(mean, shape, &mut side.pressure);
+        } else {
+            let pieces = side.fresh(response);
+            let error = side.displace(grids[0].convolution(), response, &pieces);
+            applications += 2;
+            let relative = (error / pieces.energy).sqrt();
+            if std::env::var("RC_GAP_SAY").is_ok() {
+                eprintln!("{}: {n_cycles} cycles: {relative:.2e} goal {:.2e}", grid.nx(), goal.error);
+            }
+            // NaN does not fall.
+            if relative <= goal.error || n_cycles >= MAX_CYCLES || !(relative < LEAST_FALL * last) {
+                let sums = side.make_admissible(grids[0].convolution(), &pieces);
+                let GapSide { pressure, gap, .. } = side;
+                return GapSolution { pressure, gap, sums, error, applications };
+            }
+            last = relative;
+        }
+        cycle(grids, &mut side.gap, &mut side.pressure);
+        (applications, n_cycles) = (applications + 1, n_cycles + 1);
+    }
 }
 
 struct GapSide<'a> {
@@ -89,11 +121,12 @@ struct GapSide<'a> {
     gap: Vec<f64>,
 }
 
-/// The factors that restore the load of pieces, and the mean gap.
+/// The factors that restore the load of pieces, the mean gap, and the energy U.
 struct Pieces {
     /// For each block of rows, a factor for each piece along x.
     factors: Vec<Vec<f64>>,
     mean_gap: f64,
+    energy: f64,
 }
 
 impl Pieces {
@@ -101,7 +134,7 @@ impl Pieces {
     ///
     /// The loads are those of blocks, piece by piece. What a piece cannot take goes to the pieces around it, in squares of
     /// growing size. The cell takes the rest, so that the load becomes `whole`.
-    fn new(loads: &[Vec<[f64; 2]>], whole: f64, mean_gap: f64) -> Self {
+    fn new(loads: &[Vec<[f64; 2]>], whole: f64, [mean_gap, energy]: [f64; 2]) -> Self {
         let mut factors: Vec<Vec<f64>> = loads.iter().map(|block| vec![1.0; block.len()]).collect();
         let (n_blocks, n_pieces) = (loads.len(), loads.first().map_or(0, Vec::len));
         let (mut rows, mut columns) = (1, 1);
@@ -121,7 +154,7 @@ impl Pieces {
         }
         let [_, after] = load_of(loads, &factors, (0..n_blocks, 0..n_pieces));
         factors.iter_mut().flatten().for_each(|factor| *factor *= whole / after);
-        Self { factors, mean_gap }
+        Self { factors, mean_gap, energy }
     }
 
     /// The pressure p̂ of an element in block `i`.
@@ -152,32 +185,6 @@ impl GapSide<'_> {
         BLOCK_ROWS * self.grid.nx()
     }
 
-    /// Changes the gap until the pressure nearly vanishes in the pools.
-    fn improve(&mut self, quick: &mut Convolution<f32>, kernel: &dyn Kernel, response: &GridResponse) {
-        let (unit, len, mean) = (self.problem.unit(), self.len(), self.mean);
-        let (gap, heights, h_mean) = (&self.gap, self.heights, self.problem.h_mean);
-        write_rows(quick, &|i, rows| {
-            let here = i * len..i * len + rows.len();
-            for ((row, h), g) in rows.iter_mut().zip(&heights[here.clone()]).zip(&gap[here]) {
-                *row = ((h - h_mean + g) / unit) as f32;
-            }
-        });
-        response.factors.storage_inverse(self.grid).apply(quick);
-        let (grid, tasks) = (self.grid, Tasks::new(self.pressure.chunks_mut(len).zip(gap.chunks(len))));
-        read_rows(quick, &|i, rows| {
-            tasks.run(i, |(pressure, gap): (&mut [f64], &[f64])| {
-                pressure.iter_mut().zip(rows).for_each(|(p, row)| *p = mean + unit * f64::from(*row));
-                tiles_at_pools(grid, i * BLOCK_ROWS, [pressure, gap])
-            });
-        });
-        let mut places = tasks.into_results().concat();
-        places.sort_unstable();
-        places.dedup();
-        let mut pools = Pools::new(grid, places, [&self.gap, &self.pressure], unit);
-        pools.relax(&NearKernel::new(kernel, grid, unit));
-        pools.put_gap(grid, &mut self.gap, unit);
-    }
-
     /// Computes p(g) afresh, in double precision.
     fn fresh(&mut self, response: &GridResponse) -> Pieces {
         let (grid, len, mean) = (self.grid, self.len(), self.mean);
@@ -190,89 +197,75 @@ impl GapSide<'_> {
             }
         });
         response.factors.inverse(grid).apply(&mut convolution);
-        let tasks = Tasks::new(self.pressure.chunks_mut(len).zip(gap.chunks(len)));
+        let tasks = Tasks::new(self.pressure.chunks_mut(len).zip(gap.chunks(len).zip(heights.chunks(len))));
         read_rows(&convolution, &|i, rows| {
-            tasks.run(i, |(pressure, gap): (&mut [f64], &[f64])| {
-                pressure.iter_mut().zip(rows).for_each(|(p, row)| *p = mean + row);
-                loads_of_block(grid.nx(), pressure, gap)
+            tasks.run(i, |(pressure, (gap, heights)): (&mut [f64], (&[f64], &[f64]))| {
+                let mut works = 0.0;
+                for ((p, row), (g, h)) in pressure.iter_mut().zip(rows).zip(gap.iter().zip(heights)) {
+                    *p = mean + row;
+                    works += row * (h - h_mean + g);
+                }
+                (loads_of_block(grid.nx(), pressure, gap), [gap.iter().sum::<f64>(), 0.5 * works])
             });
         });
-        let (loads, gaps): (Vec<_>, Vec<f64>) = tasks.into_results().into_iter().unzip();
+        let (loads, sums): (Vec<_>, Vec<[f64; 2]>) = tasks.into_results().into_iter().unzip();
         let n = grid.len() as f64;
-        Pieces::new(&loads, mean * n, gaps.into_iter().sum::<f64>() / n)
+        Pieces::new(&loads, mean * n, [0, 1].map(|k| sums.iter().map(|sum| sum[k]).sum::<f64>() / n))
     }
 
-    /// Makes the pressure p̂ and its gap. Returns ⟨x L x⟩ for the change x of the pressure, and sums over the result.
-    fn make_admissible(
-        &mut self,
-        quick: &mut Convolution<f32>,
-        response: &GridResponse,
-        pieces: &Pieces,
-    ) -> (f64, GapSums) {
+    /// Computes the displacement by the change x to the pressure p̂, and returns ⟨x L x⟩.
+    fn displace(&self, quick: &mut Convolution<f32>, response: &GridResponse, pieces: &Pieces) -> f64 {
         let (len, nx, unit) = (self.len(), self.grid.nx(), self.problem.unit());
         let (pressure, gap) = (&self.pressure, &self.gap);
+        let change = |i: usize, at: usize| {
+            let (p, g) = (pressure[i * len + at], gap[i * len + at]);
+            pieces.admissible((i, at % nx), p, g) - p
+        };
         write_rows(quick, &|i, rows| {
-            let here = i * len..i * len + rows.len();
-            for (at, (row, (p, g))) in rows.iter_mut().zip(pressure[here.clone()].iter().zip(&gap[here])).enumerate() {
-                *row = ((pieces.admissible((i, at % nx), *p, *g) - p) / unit) as f32;
-            }
+            rows.iter_mut().enumerate().for_each(|(at, row)| *row = (change(i, at) / unit) as f32);
         });
         response.factors.to_single().apply(quick);
+        let tasks = Tasks::new(pressure.chunks(len));
+        read_rows(quick, &|i, rows| {
+            tasks.run(i, |_| {
+                rows.iter().enumerate().map(|(at, row)| change(i, at) * unit * f64::from(*row)).sum::<f64>()
+            });
+        });
+        tasks.into_results().into_iter().sum::<f64>() / self.grid.len() as f64
+    }
+
+    /// Makes the pressure p̂ and its gap, from the displacement of the change. Returns sums over the result.
+    fn make_admissible(&mut self, quick: &Convolution<f32>, pieces: &Pieces) -> GapSums {
+        let (len, nx, unit) = (self.len(), self.grid.nx(), self.problem.unit());
         let (floor, shift) = (self.problem.offset(), -self.problem.h_mean - pieces.mean_gap);
         let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let tasks = Tasks::new(elements.blocks(len));
         let empty = GapSums::empty(f64::INFINITY, f64::INFINITY);
         read_rows(quick, &|i, rows| {
             tasks.run(i, |ElementValues { heights, pressure, gap }: ElementValues<'_>| {
-                let (mut sum, mut sums) = (0.0, empty);
+                let mut sums = empty;
                 for (at, (((p, g), h), row)) in pressure.iter_mut().zip(gap).zip(heights).zip(rows).enumerate() {
-                    let (admissible, displacement) = (pieces.admissible((i, at % nx), *p, *g), unit * f64::from(*row));
-                    sum += (admissible - *p) * displacement;
-                    (*p, *g) = (admissible, *g + displacement + shift + floor);
+                    *p = pieces.admissible((i, at % nx), *p, *g);
+                    *g += unit * f64::from(*row) + shift + floor;
                     sums.add_element(*p, *g, h - floor);
                 }
-                (sum, sums)
+                sums
             });
         });
-        let (works, sums): (Vec<f64>, Vec<GapSums>) = tasks.into_results().into_iter().unzip();
-        let error = works.into_iter().sum::<f64>() / self.grid.len() as f64;
-        (error, GapSums::total(&layout(self.grid), sums))
+        GapSums::total(&layout(self.grid), tasks.into_results())
     }
 }
 
-/// The loads of the pieces of a block, before and after pressures are set to zero, and Σ g.
-fn loads_of_block(nx: usize, pressure: &[f64], gap: &[f64]) -> (Vec<[f64; 2]>, f64) {
+/// The loads of the pieces of a block, before and after pressures are set to zero.
+fn loads_of_block(nx: usize, pressure: &[f64], gap: &[f64]) -> Vec<[f64; 2]> {
     let mut loads = vec![[0.0; 2]; nx.div_ceil(PIECE)];
-    let mut gaps = 0.0;
     for (pressure, gap) in pressure.chunks(nx).zip(gap.chunks(nx)) {
         for ((pressure, gap), [before, after]) in pressure.chunks(PIECE).zip(gap.chunks(PIECE)).zip(&mut loads) {
             for (p, g) in pressure.iter().zip(gap) {
                 *before += p;
                 *after += allowed(*p, *g);
-                gaps += g;
             }
         }
     }
-    (loads, gaps)
-}
-
-/// The tiles at elements with a gap or a tensile pressure, in a block of rows from `first` on.
-fn tiles_at_pools(grid: Grid, first: usize, [pressure, gap]: [&[f64]; 2]) -> Vec<[u32; 2]> {
-    let (nx, ny) = (grid.nx(), grid.ny());
-    let tiles = |i: usize, n: usize| [(i + n - MARGIN) % n / TILE, (i + MARGIN) % n / TILE];
-    let mut places = Vec::new();
-    for (y, (pressure, gap)) in pressure.chunks(nx).zip(gap.chunks(nx)).enumerate() {
-        let (rows, mut last) = (tiles(first + y, ny), [usize::MAX; 2]);
-        for (x, _) in pressure.iter().zip(gap).enumerate().filter(|(_, (p, g))| **g > 0.0 || **p < 0.0) {
-            let columns = tiles(x, nx);
-            if columns != last {
-                last = columns;
-                let at = |row: usize| columns.map(|column| [column as u32, row as u32]);
-                places.extend(rows.into_iter().flat_map(at));
-            }
-        }
-    }
-    places.sort_unstable();
-    places.dedup();
-    places
+    loads
 }

@@ -15,7 +15,7 @@ use crate::tiles::operator::stencil::Taps;
 use crate::tiles::operator::tile_values::TileValues;
 
 /// Reach of the kernel, in elements.
-const RADIUS: usize = 8;
+const RADIUS: usize = 5;
 
 /// Number of steps.
 ///
@@ -177,28 +177,32 @@ impl Pools {
         closed.into_iter().any(|is_closed| is_closed)
     }
 
-    /// Writes the gaps to those of the whole grid.
-    pub(super) fn put_gap(&self, grid: Grid, gap: &mut [f64], unit: f64) {
+    /// Writes gap and pressure to those of the whole grid.
+    pub(super) fn put(&self, grid: Grid, [gap, pressure]: [&mut [f64]; 2], unit: f64) {
         let row_of_tiles = TILE * grid.nx();
         let mut rows = vec![Vec::new(); grid.ny() / TILE];
         for (tile, place) in self.tiles.places().iter().enumerate() {
             rows[place[1] as usize].push(tile);
         }
-        parallel::for_each(gap.chunks_mut(row_of_tiles).zip(rows), |(gap, tiles)| {
-            for tile in tiles {
-                let column = self.tiles.places()[tile][0];
-                for (y, row) in self.gap[tile * CELLS..][..CELLS].chunks(TILE).enumerate() {
-                    let to = &mut gap[first_of_row(grid, [column, 0], y)..][..TILE];
-                    to.iter_mut().zip(row).for_each(|(to, g)| *to = unit * f64::from(*g));
+        let put = |values: &[f32], unit: f64, whole: &mut [f64]| {
+            parallel::for_each(whole.chunks_mut(row_of_tiles).zip(&rows), |(whole, tiles)| {
+                for &tile in tiles {
+                    let column = self.tiles.places()[tile][0];
+                    for (y, row) in values[tile * CELLS..][..CELLS].chunks(TILE).enumerate() {
+                        let to = &mut whole[first_of_row(grid, [column, 0], y)..][..TILE];
+                        to.iter_mut().zip(row).for_each(|(to, value)| *to = unit * f64::from(*value));
+                    }
                 }
-            }
-        });
+            });
+        };
+        put(&self.gap, unit, gap);
+        put(&self.pressure, 1.0, pressure);
     }
 }
 
 /// Whether an element has a gap, or may open.
-fn is_active(gap: f32, pressure: f32) -> bool {
-    gap > 0.0 || pressure < 0.0
+pub(super) fn is_active<T: PartialOrd + From<i8>>(gap: T, pressure: T) -> bool {
+    gap > T::from(0) || pressure < T::from(0)
 }
 
 /// The index of the first element of row `y` of a tile.

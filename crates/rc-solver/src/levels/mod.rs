@@ -9,6 +9,7 @@ pub(crate) mod coarse_level;
 pub(crate) mod estimate;
 mod evaluation;
 pub(crate) mod finest_level;
+pub(crate) mod gap_cycle;
 pub(crate) mod gap_levels;
 pub(crate) mod gap_prolongation;
 pub(crate) mod gap_side;
