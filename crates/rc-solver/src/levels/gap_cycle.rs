@@ -21,6 +21,9 @@ const SMALLEST_SIDE: usize = 32;
 /// Elements of pools reach this far for the tiles that steps change.
 const MARGIN: usize = 2;
 
+/// Number of the finest grids that a cycle visits once.
+const ONE_VISIT: usize = 2;
+
 /// The operator K = L⁻¹ on a grid, and its kernel near an element.
 pub(super) struct GapGrid {
     grid: Grid,
@@ -78,19 +81,16 @@ impl GapGrid {
         });
     }
 
-    /// Adds the correction that a coarser grid has found to the gap, and its effect to the pressure.
-    fn correct(&mut self, correction: &[f64], gap: &mut [f64], pressure: &mut [f64]) {
-        let (len, unit, [nx, ny]) = (self.len(), self.unit, [self.grid.nx(), self.grid.ny()]);
-        let change = |at: usize, g: f64, p: f64| {
-            if is_active(g, p) { interpolated(correction, [nx, ny], at).max(-g) } else { 0.0 }
-        };
+    /// Changes the gap, and the pressure with it. `change` is called with an element and its gap and pressure.
+    fn change(&mut self, [gap, pressure]: [&mut [f64]; 2], change: impl Fn(usize, f64, f64) -> f64 + Sync) {
+        let (len, unit) = (self.len(), self.unit);
         {
             let (gap, pressure) = (&*gap, &*pressure);
             write_rows(&mut self.convolution, &|i, rows| {
                 let here = i * len..i * len + rows.len();
-                let elements = gap[here.clone()].iter().zip(&pressure[here]);
-                for (at, (row, (g, p))) in rows.iter_mut().zip(elements).enumerate() {
-                    *row = (change(i * len + at, *g, *p) / unit) as f32;
+                let elements = gap[here.clone()].iter().zip(&pressure[here.clone()]);
+                for (at, (row, (g, p))) in here.zip(rows.iter_mut().zip(elements)) {
+                    *row = (change(at, *g, *p) / unit) as f32;
                 }
             });
         }
@@ -107,7 +107,7 @@ impl GapGrid {
     }
 
     /// Takes steps near the pools.
-    fn relax(&self, gap: &mut [f64], pressure: &mut [f64]) {
+    pub(super) fn relax(&self, gap: &mut [f64], pressure: &mut [f64]) {
         let (grid, len) = (self.grid, self.len());
         let blocks = pressure.chunks(len).zip(gap.chunks(len)).enumerate();
         let mut places =
@@ -122,19 +122,35 @@ impl GapGrid {
 }
 
 /// Improves a gap on the first grid, whose pressure is known. The pressure follows near pools.
-pub(super) fn cycle(grids: &mut [GapGrid], gap: &mut [f64], pressure: &mut [f64]) {
+///
+/// `depth` is the number of finer grids in the cycle. From the third grid on, each is visited twice, which costs little:
+/// on coarse grids, many elements are only partly in pools, and one visit does not correct long waves well.
+pub(super) fn cycle(grids: &mut [GapGrid], depth: usize, gap: &mut [f64], pressure: &mut [f64]) {
     let Some((here, coarser)) = grids.split_first_mut() else { return };
-    if !coarser.is_empty() {
-        let [before, mut coarse_pressure] = restricted([here.grid.nx(), here.grid.ny()], gap, pressure);
-        let mut after = before.clone();
-        cycle(coarser, &mut after, &mut coarse_pressure);
-        let nx = here.grid.nx() / 2;
-        parallel::for_each(after.chunks_mut(nx).zip(before.chunks(nx)), |(after, before)| {
-            after.iter_mut().zip(before).for_each(|(after, before)| *after -= before);
-        });
-        here.correct(&after, gap, pressure);
+    let sides = [here.grid.nx(), here.grid.ny()];
+    if coarser.is_empty() {
+        return here.relax(gap, pressure);
     }
-    here.relax(gap, pressure);
+    for is_last in if depth < ONE_VISIT { &[true][..] } else { &[false, true] } {
+        let [before, mut coarse_pressure] = restricted(sides, gap, pressure);
+        let mut correction = before.clone();
+        cycle(coarser, depth + 1, &mut correction, &mut coarse_pressure);
+        let rows = correction.chunks_mut(sides[0]).zip(before.chunks(sides[0]));
+        parallel::for_each(rows, |(after, before)| after.iter_mut().zip(before).for_each(|(g, before)| *g -= before));
+        here.change(
+            [gap, pressure],
+            |at, g, p| {
+                if is_active(g, p) { interpolated(&correction, sides, at).max(-g) } else { 0.0 }
+            },
+        );
+        if *is_last {
+            here.relax(gap, pressure);
+        } else {
+            let [mut next, mut near] = [gap.to_vec(), pressure.to_vec()];
+            here.relax(&mut next, &mut near);
+            here.change([gap, pressure], |at, g, _| next[at] - g);
+        }
+    }
 }
 
 /// Gap and pressure on a grid with half the elements.

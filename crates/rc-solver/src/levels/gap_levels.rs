@@ -3,9 +3,10 @@
 //! The grid below them is solved by rounds, as all coarser ones. It shows how much of the surface is in contact. If the
 //! cycles on a grid do not reach their goal, rounds go on from the grid below, as if nothing had been tried.
 
-use rc_core::{Boundary, Kernel};
+use rc_core::{Boundary, Grid, Kernel};
 use rc_quadtree::TILE;
 
+use crate::descent::info::{LevelInfo, LevelValues};
 use crate::descent::outcome::{OF_OBSERVABLES, Outcome};
 use crate::descent::run::DescentObserver;
 use crate::descent::state::{Descent, Start};
@@ -16,6 +17,7 @@ use crate::levels::gap_prolongation::prolong_gap;
 use crate::levels::gap_side::{self, Goal};
 use crate::levels::grids::GridLevels;
 use crate::levels::nested::{History, Levels as _, Nested};
+use crate::parallel::{self, rms};
 use crate::problem::tolerance::Measure;
 
 /// Number of grids that are solved for the gap.
@@ -24,14 +26,14 @@ const LEVELS: usize = 3;
 /// Part of the grid below in contact.
 const HEAVY: f64 = 0.6;
 
-/// Part of the grid below in contact from which one cycle may do.
-const NEARLY_FULL: f64 = 0.9;
+/// Part of the grid below in contact from which steps near pools may do.
+const NEARLY_FULL: f64 = 0.95;
 
 /// Minimum number of elements along a side of the finest grid.
 const LEAST_SIDE: usize = 512;
 
-/// Largest ratio of the energy error to its goal.
-const ACCEPTED: f64 = 2.0;
+/// Ratio of the errors of observables to those of rounds.
+const AS_ROUNDS: f64 = 2.0;
 
 /// The smallest goal of the energy error that gaps in single precision reach.
 const LEAST_GOAL: f64 = 1e-5;
@@ -56,9 +58,9 @@ pub(super) fn solve<'a>(grids: &GridLevels<'a>, kernel: &dyn Kernel, nested: &Ne
     (nested.solve(grids, nested.climb(grids, begun, 0)), false)
 }
 
-/// The energy error whose effect on observables is that of rounds.
+/// The energy error whose effect on observables is about that of rounds.
 fn goal_of(nested: &Nested<'_>) -> f64 {
-    nested.params.bound.aim() / OF_OBSERVABLES
+    AS_ROUNDS * nested.params.bound.aim() / OF_OBSERVABLES
 }
 
 /// Whether the problem and its grids are such that the gap can be solved for.
@@ -89,7 +91,7 @@ fn contact_fraction(base: &Descent<'_>) -> f64 {
     n as f64 / base.grid().len() as f64
 }
 
-/// Solves the finest grids for their gap. `None` if one of them does not reach its goal.
+/// Solves the finest grids for their gap. `None` if the last one does not reach its goal.
 fn climb<'a>(
     grids: &GridLevels<'a>,
     kernel: &dyn Kernel,
@@ -97,38 +99,49 @@ fn climb<'a>(
     (base, history): (&Descent<'a>, &History),
     contact: f64,
 ) -> Option<Solved<'a>> {
-    let mean = grids.problem().bounds.mean()?;
-    let goal = Goal { error: goal_of(nested), cycles: if contact >= NEARLY_FULL { 1 } else { 2 } };
+    let problem = grids.problem();
+    let mean = problem.bounds.mean()?;
+    let response = GridResponse::of(grids.grid(0), kernel);
+    let mut on_grids = GapGrid::nested(grids.grid(0), kernel, &response, problem.unit());
     let mut history = History { levels: history.levels.clone(), coarser: None };
-    let mut gap = prolong_gap(base, grids.grid(LEVELS - 1));
+    let mut gap = prolong_gap([base.pressure(), base.gap()], base.contact_gap(), [base.grid(), grids.grid(LEVELS - 1)]);
     for above in (1..LEVELS).rev() {
-        let (descent, outcome) = solve_grid(grids, kernel, nested, (gap, mean, goal), above)?;
-        history.levels.push(descent.info());
-        history.coarser = grids.values_of(&descent, &outcome, above);
-        gap = prolong_gap(&descent, grids.grid(above - 1));
+        let grid = grids.grid(above);
+        nested.announce(grid, above);
+        let cycles = (&mut on_grids[above..], 1);
+        let [better, mut pressure] = gap_side::improve(gap, grids.heights(above), cycles, (problem, mean));
+        gap_side::allow(&mut pressure, &better, grid.nx());
+        history.levels.push(level_info(grid, 2));
+        history.coarser = Some(LevelValues {
+            rms_pressure: rms(&pressure, grid.nx()),
+            penetration: problem.h_max - problem.h_mean - mean_of(&better, grid.nx()),
+            friction: None,
+        });
+        if nested.observer.should_stop() {
+            return None;
+        }
+        gap = prolong_gap([&pressure, &better], 0.0, [grid, grids.grid(above - 1)]);
     }
-    let solved = solve_grid(grids, kernel, nested, (gap, mean, goal), 0)?;
-    history.levels.push(solved.0.info());
-    Some((solved, history))
-}
-
-/// Solves a grid for its gap, from that of the grid below. `None` if it does not reach the goal.
-fn solve_grid<'a>(
-    grids: &GridLevels<'a>,
-    kernel: &dyn Kernel,
-    nested: &Nested<'_>,
-    (gap, mean, goal): (Vec<f64>, f64, Goal),
-    above: usize,
-) -> Option<(Descent<'a>, Outcome)> {
-    let (heights, grid, problem) = (grids.heights(above), grids.grid(above), grids.problem());
-    nested.announce(grid, above);
-    let response = GridResponse::of(grid, kernel);
-    let mut on_grids = GapGrid::nested(grid, kernel, &response, problem.unit());
+    let (heights, grid) = (grids.heights(0), grids.grid(0));
+    nested.announce(grid, 0);
+    let goal = Goal { error: goal_of(nested), cycles: usize::from(contact < NEARLY_FULL) };
     let solution = gap_side::solve(gap, heights, (&mut on_grids, &response), (problem, mean, goal));
     let start = Start::Known { pressure: solution.pressure, gap: solution.gap };
     let mut descent = Descent::without_steps(heights.values(), grid, no_operators(grid), problem, start);
-    descent.info.operator_applications = solution.applications;
+    descent.info = level_info(grid, solution.applications);
+    history.levels.push(descent.info());
     let watch = DescentObserver { observer: nested.observer, mesh: &grid };
-    let outcome = descent.check_start(solution.sums, solution.error, ACCEPTED * goal.error, &watch);
-    (outcome.converged && !nested.observer.should_stop()).then_some((descent, outcome))
+    let outcome = descent.check_start(solution.sums, solution.error, goal.error, &watch);
+    (outcome.converged && !nested.observer.should_stop()).then_some(((descent, outcome), history))
+}
+
+/// The work on a grid that is solved for its gap.
+fn level_info(grid: Grid, operator_applications: usize) -> LevelInfo {
+    LevelInfo { grid, iterations: 0, operator_applications, preconditioner_applications: 0 }
+}
+
+/// The mean of values, in pieces of `len`.
+fn mean_of(values: &[f64], len: usize) -> f64 {
+    let sums = parallel::map(values.chunks(len), |values| values.iter().sum::<f64>());
+    sums.into_iter().sum::<f64>() / values.len() as f64
 }

@@ -6,7 +6,6 @@
 
 use rc_core::Grid;
 
-use crate::descent::state::Descent;
 use crate::parallel;
 
 /// Weights of the coarse values before, at, behind and beyond a fine centre, which is a quarter of an element away.
@@ -18,10 +17,12 @@ const EDGE_DISTANCE: f64 = 0.7;
 /// Largest distance from an edge that matters, in elements.
 const FARTHEST: f64 = 3.0;
 
-/// The gap on a `finer` grid with twice the elements along both axes, from a descent. It is zero in contact.
-pub(super) fn prolong_gap(coarse: &Descent<'_>, finer: Grid) -> Vec<f64> {
-    let pools = CoarsePools::new(coarse);
-    let edges = pools.edges(coarse.pressure(), coarse.grid().spacing().x);
+/// The gap on a `finer` grid with twice the elements along both axes, from pressure and gap. It is zero in contact.
+///
+/// `zero` is the gap of contact.
+pub(super) fn prolong_gap([pressure, gap]: [&[f64]; 2], zero: f64, [grid, finer]: [Grid; 2]) -> Vec<f64> {
+    let pools = CoarsePools::new([pressure, gap], zero, grid);
+    let edges = pools.edges(pressure, grid.spacing().x);
     let mut fine = parallel::zeros(finer.len());
     parallel::for_each(fine.chunks_mut(finer.nx()).enumerate(), |(y, row)| pools.prolong_row(&edges, y, row));
     fine
@@ -36,11 +37,11 @@ struct CoarsePools {
 }
 
 impl CoarsePools {
-    fn new(coarse: &Descent<'_>) -> Self {
-        let (nx, ny) = (coarse.grid().nx(), coarse.grid().ny());
-        let (zero, mut gap, mut beside) = (coarse.contact_gap(), vec![0.0; nx * ny], vec![false; nx * ny]);
+    fn new([pressure, solved]: [&[f64]; 2], zero: f64, grid: Grid) -> Self {
+        let (nx, ny) = (grid.nx(), grid.ny());
+        let (mut gap, mut beside) = (vec![0.0; nx * ny], vec![false; nx * ny]);
         let rows = gap.chunks_mut(nx).zip(beside.chunks_mut(nx));
-        let solved = coarse.pressure().chunks(nx).zip(coarse.gap().chunks(nx));
+        let solved = pressure.chunks(nx).zip(solved.chunks(nx));
         parallel::for_each(rows.zip(solved), |((row, beside), (pressure, gap))| {
             for (x, (p, g)) in pressure.iter().zip(gap).enumerate() {
                 if *p <= 0.0 && *g > zero {

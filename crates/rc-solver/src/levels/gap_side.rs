@@ -27,7 +27,7 @@ use crate::descent::sums::GapSums;
 use crate::grid::passes::{layout, read_rows, write_rows};
 use crate::grid::response::GridResponse;
 use crate::levels::gap_cycle::{GapGrid, cycle};
-use crate::parallel::Tasks;
+use crate::parallel::{self, Tasks};
 use crate::problem::checked::Problem;
 
 /// Elements along a row of the pieces of blocks that keep their load.
@@ -67,10 +67,32 @@ pub(super) struct Goal {
 }
 
 /// Maximum number of cycles.
-const MAX_CYCLES: usize = 5;
+const MAX_CYCLES: usize = 3;
 
 /// Ratio of the errors before and after a cycle above which there is no other one.
 const LEAST_FALL: f64 = 0.5;
+
+/// Improves a `gap` that was interpolated to the first of `grids`. Returns it with its pressure.
+///
+/// Without cycles, only steps near pools are taken.
+pub(super) fn improve(
+    mut gap: Vec<f64>,
+    heights: &Field,
+    (grids, cycles): (&mut [GapGrid], usize),
+    (problem, mean): (&Problem, f64),
+) -> [Vec<f64>; 2] {
+    let mut pressure = vec![0.0; gap.len()];
+    for _ in 0..cycles.max(1) {
+        let shape = |at: usize| heights.values()[at] - problem.h_mean + gap[at];
+        grids[0].pressure_under(mean, shape, &mut pressure);
+        if cycles == 0 {
+            grids[0].relax(&mut gap, &mut pressure);
+        } else {
+            cycle(grids, 0, &mut gap, &mut pressure);
+        }
+    }
+    [gap, pressure]
+}
 
 /// The solution on the first of `grids` that follows from a `gap` interpolated to it.
 ///
@@ -81,33 +103,27 @@ pub(super) fn solve(
     (grids, response): (&mut [GapGrid], &GridResponse),
     (problem, mean, goal): (&Problem, f64, Goal),
 ) -> GapSolution {
-    let (grid, h_mean) = (heights.grid(), problem.h_mean);
-    let mut side = GapSide { grid, heights: heights.values(), problem, mean, pressure: vec![0.0; grid.len()], gap };
-    let shape = |at: usize| side.heights[at] - h_mean + side.gap[at];
-    grids[0].pressure_under(mean, shape, &mut side.pressure);
-    cycle(grids, &mut side.gap, &mut side.pressure);
-    let (mut applications, mut n_cycles, mut last) = (2, 1, f64::INFINITY);
+    let grid = heights.grid();
+    let [gap, pressure] = improve(gap, heights, (grids, goal.cycles), (problem, mean));
+    let mut side = GapSide { grid, heights: heights.values(), problem, mean, pressure, gap };
+    let (mut n_cycles, mut last) = (goal.cycles, f64::INFINITY);
+    let mut applications = if n_cycles == 0 { 1 } else { 2 * n_cycles };
     loop {
-        if n_cycles < goal.cycles {
-            let shape = |at: usize| side.heights[at] - h_mean + side.gap[at];
-            grids[0].pressure_under(mean, shape, &mut side.pressure);
-        } else {
-            let pieces = side.fresh(response);
-            let error = side.displace(grids[0].convolution(), response, &pieces);
-            applications += 2;
-            let relative = (error / pieces.energy).sqrt();
-            if std::env::var("RC_GAP_SAY").is_ok() {
-                eprintln!("{}: {n_cycles} cycles: {relative:.2e} goal {:.2e}", grid.nx(), goal.error);
-            }
-            // NaN does not fall.
-            if relative <= goal.error || n_cycles >= MAX_CYCLES || !(relative < LEAST_FALL * last) {
-                let sums = side.make_admissible(grids[0].convolution(), &pieces);
-                let GapSide { pressure, gap, .. } = side;
-                return GapSolution { pressure, gap, sums, error, applications };
-            }
-            last = relative;
+        let pieces = side.fresh(response);
+        let error = side.displace(grids[0].convolution(), response, &pieces);
+        applications += 2;
+        let relative = (error / pieces.energy).sqrt();
+        if std::env::var("RC_GAP_SAY").is_ok() {
+            eprintln!("{}: {n_cycles} cycles: {relative:.2e} goal {:.2e}", grid.nx(), goal.error);
         }
-        cycle(grids, &mut side.gap, &mut side.pressure);
+        // NaN does not fall.
+        if relative <= goal.error || n_cycles >= MAX_CYCLES || !(relative < LEAST_FALL * last) {
+            let sums = side.make_admissible(grids[0].convolution(), &pieces);
+            let GapSide { pressure, gap, .. } = side;
+            return GapSolution { pressure, gap, sums, error, applications };
+        }
+        last = relative;
+        cycle(grids, 0, &mut side.gap, &mut side.pressure);
         (applications, n_cycles) = (applications + 1, n_cycles + 1);
     }
 }
@@ -178,6 +194,13 @@ fn load_of(loads: &[Vec<[f64; 2]>], factors: &[Vec<f64>], (blocks, pieces): (Ran
 /// A pressure, or zero where it must not be.
 fn allowed(pressure: f64, gap: f64) -> f64 {
     if gap > 0.0 { 0.0 } else { pressure.max(0.0) }
+}
+
+/// Sets pressures to zero where they must not be.
+pub(super) fn allow(pressure: &mut [f64], gap: &[f64], nx: usize) {
+    parallel::for_each(pressure.chunks_mut(nx).zip(gap.chunks(nx)), |(pressure, gap)| {
+        pressure.iter_mut().zip(gap).for_each(|(p, g)| *p = allowed(*p, *g));
+    });
 }
 
 impl GapSide<'_> {
