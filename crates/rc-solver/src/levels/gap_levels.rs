@@ -14,7 +14,7 @@ use crate::grid::operators::no_operators;
 use crate::grid::response::GridResponse;
 use crate::levels::gap_cycle::GapGrid;
 use crate::levels::gap_prolongation::prolong_gap;
-use crate::levels::gap_side::{self, Goal};
+use crate::levels::gap_side;
 use crate::levels::grids::GridLevels;
 use crate::levels::nested::{History, Levels as _, Nested};
 use crate::parallel::{self, rms};
@@ -24,7 +24,7 @@ use crate::problem::tolerance::Measure;
 const LEVELS: usize = 3;
 
 /// Part of the grid below in contact.
-const HEAVY: f64 = 0.6;
+const HEAVY: f64 = 0.9;
 
 /// Part of the grid below in contact from which steps near pools may do.
 const NEARLY_FULL: f64 = 0.95;
@@ -49,7 +49,7 @@ pub(super) fn solve<'a>(grids: &GridLevels<'a>, kernel: &dyn Kernel, nested: &Ne
     let (base, history) = nested.solve(grids, begun);
     let contact = contact_fraction(&base.0);
     if !nested.observer.should_stop()
-        && contact >= std::env::var("RC_GAP_MIN").map_or(HEAVY, |s| s.parse().unwrap())
+        && contact >= HEAVY
         && let Some(solved) = climb(grids, kernel, nested, (&base.0, &history), contact)
     {
         return (solved, true);
@@ -108,8 +108,8 @@ fn climb<'a>(
     for above in (1..LEVELS).rev() {
         let grid = grids.grid(above);
         nested.announce(grid, above);
-        let cycles = (&mut on_grids[above..], 1);
-        let [better, mut pressure] = gap_side::improve(gap, grids.heights(above), cycles, (problem, mean));
+        let [better, mut pressure] =
+            gap_side::improve(gap, grids.heights(above), (&mut on_grids[above..], true), (problem, mean));
         gap_side::allow(&mut pressure, &better, grid.nx());
         history.levels.push(level_info(grid, 2));
         history.coarser = Some(LevelValues {
@@ -124,14 +124,15 @@ fn climb<'a>(
     }
     let (heights, grid) = (grids.heights(0), grids.grid(0));
     nested.announce(grid, 0);
-    let goal = Goal { error: goal_of(nested), cycles: usize::from(contact < NEARLY_FULL) };
-    let solution = gap_side::solve(gap, heights, (&mut on_grids, &response), (problem, mean, goal));
+    let (is_cycle, goal) = (contact < NEARLY_FULL, goal_of(nested));
+    let improved = gap_side::improve(gap, heights, (&mut on_grids, is_cycle), (problem, mean));
+    let solution = gap_side::solve(improved, heights, (&mut on_grids, &response), (problem, mean), goal);
     let start = Start::Known { pressure: solution.pressure, gap: solution.gap };
     let mut descent = Descent::without_steps(heights.values(), grid, no_operators(grid), problem, start);
-    descent.info = level_info(grid, solution.applications);
+    descent.info = level_info(grid, solution.applications + if is_cycle { 2 } else { 1 });
     history.levels.push(descent.info());
     let watch = DescentObserver { observer: nested.observer, mesh: &grid };
-    let outcome = descent.check_start(solution.sums, solution.error, goal.error, &watch);
+    let outcome = descent.check_start(solution.sums, solution.error, goal, &watch);
     (outcome.converged && !nested.observer.should_stop()).then_some(((descent, outcome), history))
 }
 

@@ -53,78 +53,60 @@ pub(super) struct GapSolution {
     pub(super) sums: GapSums,
     /// Bound on ⟨p̂ - p*, L (p̂ - p*)⟩.
     pub(super) error: f64,
-    /// Number of applications of L and K on the grid.
+    /// Number of applications of L and K that it took.
     pub(super) applications: usize,
 }
 
-/// When cycles end.
-#[derive(Clone, Copy)]
-pub(super) struct Goal {
-    /// The error of the pressure in the energy norm, in units of √U.
-    pub(super) error: f64,
-    /// Number of cycles before the error is looked at.
-    pub(super) cycles: usize,
-}
-
-/// Maximum number of cycles.
-const MAX_CYCLES: usize = 3;
+/// Maximum number of further cycles.
+const MAX_CYCLES: usize = 2;
 
 /// Ratio of the errors before and after a cycle above which there is no other one.
 const LEAST_FALL: f64 = 0.5;
 
 /// Improves a `gap` that was interpolated to the first of `grids`. Returns it with its pressure.
 ///
-/// Without cycles, only steps near pools are taken.
+/// Either a cycle does, or only steps near pools.
 pub(super) fn improve(
     mut gap: Vec<f64>,
     heights: &Field,
-    (grids, cycles): (&mut [GapGrid], usize),
+    (grids, is_cycle): (&mut [GapGrid], bool),
     (problem, mean): (&Problem, f64),
 ) -> [Vec<f64>; 2] {
-    let mut pressure = vec![0.0; gap.len()];
-    for _ in 0..cycles.max(1) {
-        let shape = |at: usize| heights.values()[at] - problem.h_mean + gap[at];
-        grids[0].pressure_under(mean, shape, &mut pressure);
-        if cycles == 0 {
-            grids[0].relax(&mut gap, &mut pressure);
-        } else {
-            cycle(grids, 0, &mut gap, &mut pressure);
-        }
+    let mut pressure = parallel::zeros(gap.len());
+    let shape = |at: usize| heights.values()[at] - problem.h_mean + gap[at];
+    grids[0].pressure_under(mean, shape, &mut pressure);
+    if is_cycle {
+        cycle(grids, 0, &mut gap, &mut pressure);
+    } else {
+        grids[0].relax(&mut gap, &mut pressure);
     }
     [gap, pressure]
 }
 
-/// The solution on the first of `grids` that follows from a `gap` interpolated to it.
+/// The solution on the first of `grids` that follows from an improved gap and its pressure.
 ///
-/// Cycles go on until the error is within the goal, or no longer falls.
+/// Cycles go on until its error, in units of √U, is within the `goal`, or no longer falls.
 pub(super) fn solve(
-    gap: Vec<f64>,
+    [gap, pressure]: [Vec<f64>; 2],
     heights: &Field,
     (grids, response): (&mut [GapGrid], &GridResponse),
-    (problem, mean, goal): (&Problem, f64, Goal),
+    (problem, mean): (&Problem, f64),
+    goal: f64,
 ) -> GapSolution {
-    let grid = heights.grid();
-    let [gap, pressure] = improve(gap, heights, (grids, goal.cycles), (problem, mean));
-    let mut side = GapSide { grid, heights: heights.values(), problem, mean, pressure, gap };
-    let (mut n_cycles, mut last) = (goal.cycles, f64::INFINITY);
-    let mut applications = if n_cycles == 0 { 1 } else { 2 * n_cycles };
+    let mut side = GapSide { grid: heights.grid(), heights: heights.values(), problem, mean, pressure, gap };
+    let (mut last, mut n_cycles) = (f64::INFINITY, 0);
     loop {
         let pieces = side.fresh(response);
         let error = side.displace(grids[0].convolution(), response, &pieces);
-        applications += 2;
         let relative = (error / pieces.energy).sqrt();
-        if std::env::var("RC_GAP_SAY").is_ok() {
-            eprintln!("{}: {n_cycles} cycles: {relative:.2e} goal {:.2e}", grid.nx(), goal.error);
-        }
         // NaN does not fall.
-        if relative <= goal.error || n_cycles >= MAX_CYCLES || !(relative < LEAST_FALL * last) {
-            let sums = side.make_admissible(grids[0].convolution(), &pieces);
+        if relative <= goal || n_cycles == MAX_CYCLES || !(relative < LEAST_FALL * last) {
+            let (sums, applications) = (side.make_admissible(grids[0].convolution(), &pieces), 2 + 3 * n_cycles);
             let GapSide { pressure, gap, .. } = side;
             return GapSolution { pressure, gap, sums, error, applications };
         }
-        last = relative;
         cycle(grids, 0, &mut side.gap, &mut side.pressure);
-        (applications, n_cycles) = (applications + 1, n_cycles + 1);
+        (last, n_cycles) = (relative, n_cycles + 1);
     }
 }
 

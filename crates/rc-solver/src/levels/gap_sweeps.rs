@@ -15,12 +15,12 @@ use crate::tiles::operator::stencil::Taps;
 use crate::tiles::operator::tile_values::TileValues;
 
 /// Reach of the kernel, in elements.
-const RADIUS: usize = 5;
+const RADIUS: usize = 6;
 
 /// Number of steps.
 ///
 /// With ten steps, the deepest overlap that is left is half as deep.
-const STEPS: usize = 6;
+const STEPS: usize = 8;
 
 /// Elements along a side of the lattice that the kernel is computed on.
 ///

@@ -124,7 +124,7 @@ impl<'a> Plan<'a> {
                 let (solution, is_from_gap) =
                     solve_uniform_or_gap(heights, kernel, problem.bounds(), &limits, observer)?;
                 if is_from_gap {
-                    reason = MethodReason::NearlyFull;
+                    reason = MethodReason::HeavyContact;
                 }
                 solution
             };
