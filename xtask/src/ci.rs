@@ -3,11 +3,11 @@
 use anyhow::Result;
 
 use crate::process::{cargo, run as run_step};
-use crate::{docs, mpi, slurm, swap, test};
+use crate::{docs, mpi, swap, test};
 
 /// Checks format, lints, documentation, dependencies and tests as continuous integration does.
 ///
-/// It also swaps crates for forks, and runs on Slurm and MPI where they are. It stops at the first failure.
+/// It also swaps crates for forks, and runs on MPI where it is. It stops at the first failure.
 #[derive(clap::Args)]
 pub(crate) struct Args {}
 
@@ -21,7 +21,6 @@ pub(crate) fn run(_args: &Args) -> Result<()> {
     check_dependencies()?;
     test::run(&test::Args::default())?;
     swap::run(&swap::Args {})?;
-    slurm::run(&slurm::Args {})?;
     mpi::run(&mpi::Args {})
 }
 

@@ -11,7 +11,6 @@ mod gfmd;
 mod mpi;
 mod process;
 mod python;
-mod slurm;
 mod stress;
 mod swap;
 mod test;
@@ -60,7 +59,6 @@ enum Command {
     Accuracy(accuracy::Args),
     Bench(bench::Args),
     Mpi(mpi::Args),
-    Slurm(slurm::Args),
     Stress(stress::Args),
     Swap(swap::Args),
     Dist(dist::Args),
@@ -90,7 +88,6 @@ fn main() -> anyhow::Result<()> {
         Command::Accuracy(args) => accuracy::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Mpi(args) => mpi::run(&args),
-        Command::Slurm(args) => slurm::run(&args),
         Command::Stress(args) => stress::run(&args),
         Command::Swap(args) => swap::run(&args),
         Command::Dist(args) => dist::run(&args),

@@ -74,8 +74,8 @@ impl std::fmt::Debug for Snapshot<'_> {
 
 /// Receives [`Event`]s.
 ///
-/// The solver calls the methods between iterations and within them, from the solving thread. They should return
-/// quickly. If several ranks (processes or threads) share a solve, each rank calls its observer. All ranks stop if the
+/// The solver calls the methods between iterations and within them, one call at a time, from one of its threads. They
+/// should return quickly. If several ranks (processes or threads) share a solve, each rank calls its observer. All ranks stop if the
 /// observer of any rank wants to stop.
 pub trait Observer: Sync {
     /// Receives an event.

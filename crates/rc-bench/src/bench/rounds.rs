@@ -19,7 +19,7 @@ use super::setting::{KernelName, LARGEST_UNIFORM, MESHES, Setting, of_peer};
 const ENOUGH: f64 = 60.0;
 
 /// Meshes of the peers. Their users state the errors of a mesh from the mesh of elements twice as large.
-const MESHES_OF_PEERS: [f64; 11] = [2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0, 128.0];
+const MESHES_OF_PEERS: [f64; 13] = [2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0, 32.0, 64.0, 128.0];
 
 /// The coarsest mesh that a surface is sampled on. Coarser meshes have every second of its points.
 const COARSEST_SAMPLED: f64 = 3.0;
@@ -222,10 +222,10 @@ mod tests {
         let mut cases = cases(SCENES[0], true);
         let is_tamaas = |case: &Case| case.peer.is_some_and(|kind| kind.name == TAMAAS.name);
         let at: Vec<usize> = (0..cases.len()).filter(|&i| is_tamaas(&cases[i])).collect();
-        // Two, three, four, six and eight elements for the shortest wave.
+        // Two, three, four, five and six elements for the shortest wave.
         assert!(at[..3].iter().all(|&i| expected(&cases, i).abs() < 1e-15));
         cases[at[2]].outcomes.push(outcome(2.0, None));
-        let expectation = 2.0 * GROWTH.powf(1.5_f64.log2());
+        let expectation = 2.0 * GROWTH.powf(1.25_f64.log2());
         assert!((expected(&cases, at[3]) - expectation).abs() < 1e-12);
         assert!(expected(&cases, at[4]).is_infinite());
         // Tamaas uses one thread, so its limit is half of that of the others.

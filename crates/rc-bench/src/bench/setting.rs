@@ -14,7 +14,7 @@ use super::scenes::Scene;
 ///
 /// The first ones hardly resolve it; only a kernel without a cut-off error of its own, and bars that are true there, make
 /// them of use.
-pub(super) const MESHES: [f64; 10] = [2.25, 3.0, 3.5, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0];
+pub(super) const MESHES: [f64; 12] = [2.25, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0, 32.0];
 
 /// Coarsest mesh of `love`, whose displacement of waves of fewer elements is not theirs.
 const COARSEST_OF_LOVE: f64 = 4.0;

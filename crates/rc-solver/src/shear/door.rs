@@ -3,6 +3,7 @@
 use rc_core::{Boundary, DVec2, Grid, Observer};
 
 use crate::descent::info::Status;
+use crate::parallel::in_pool;
 use crate::problem::capabilities::{Feature, refusal};
 use crate::problem::control::Control;
 use crate::problem::tolerance::ErrorBound;
@@ -51,6 +52,15 @@ impl Plan<'_> {
     /// # Errors
     /// [`ShearError`]. Non-convergence is an error too, and contains the best solution found.
     pub fn shear(
+        &self,
+        normal: &Solution<'_>,
+        params: &ShearParams,
+        observer: &dyn Observer,
+    ) -> Result<ShearSolution, ShearError> {
+        in_pool(|| self.shear_here(normal, params, observer))
+    }
+
+    fn shear_here(
         &self,
         normal: &Solution<'_>,
         params: &ShearParams,

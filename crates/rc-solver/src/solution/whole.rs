@@ -8,7 +8,9 @@ use rc_core::{Field, Grid};
 use crate::descent::certificate::Certificate;
 use crate::descent::contact_element::ContactElement;
 use crate::descent::info::{SolveInfo, Status};
+use crate::parallel::in_pool;
 use crate::problem::bounds::Bounds;
+use crate::problem::capabilities::Feature;
 use crate::problem::control::Control;
 use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
@@ -203,6 +205,13 @@ impl<'a> Solution<'a> {
         })
     }
 
+    /// The result of `work` in a thread of the pool, unless it may wait there: for other ranks, or in an operator of the
+    /// caller.
+    fn here_or_in_pool<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        let waits = self.ranks().size() > 1 || self.solved.features().contains(&Feature::OwnOperator);
+        if waits { work() } else { in_pool(work) }
+    }
+
     /// Contact stiffness dσ0/dΔ at fixed contact area, in E*/λ.
     ///
     /// It is computed to 1e-3 relative, or less accurately with an operator of the caller
@@ -211,7 +220,7 @@ impl<'a> Solution<'a> {
     /// takes a few applications of L.
     #[must_use]
     pub fn stiffness(&self) -> f64 {
-        *self.computed.stiffness.get_or_init(|| self.solved.stiffness())
+        *self.computed.stiffness.get_or_init(|| self.here_or_in_pool(|| self.solved.stiffness()))
     }
 
     /// The smallest dp/dσ0 in an elastic contact at rest, at this load. `None` if the kernel makes no copy of itself, and
@@ -221,7 +230,7 @@ impl<'a> Solution<'a> {
     /// it may be less. Where it is negative, a growing load relieves a point, and the creep of Lee and Radok pulls there.
     #[must_use]
     pub fn least_pressure_rise(&self) -> Option<f64> {
-        *self.computed.least_rise.get_or_init(|| self.solved.least_rise())
+        *self.computed.least_rise.get_or_init(|| self.here_or_in_pool(|| self.solved.least_rise()))
     }
 
     /// Electrical or thermal conductance of the contact spots for unit conductivity, per nominal area, in 1/λ.
@@ -231,7 +240,8 @@ impl<'a> Solution<'a> {
     /// linear solve with plastic elements, which conduct like others, or on a layer. It is infinite in full contact.
     #[must_use]
     pub fn conductance(&self) -> f64 {
-        *self.computed.conductance.get_or_init(|| self.solved.conductance().unwrap_or_else(|| self.stiffness()))
+        let of_spots = || self.here_or_in_pool(|| self.solved.conductance());
+        *self.computed.conductance.get_or_init(|| of_spots().unwrap_or_else(|| self.stiffness()))
     }
 
     /// Estimated error of [`Solution::conductance`] from the mesh and from its solve, in 1/λ.

@@ -10,6 +10,7 @@ use crate::grid::response::padded_side;
 use crate::levels::estimate::Estimate;
 use crate::levels::split::check_split;
 use crate::levels::tiles::TileLevels;
+use crate::parallel::in_pool;
 use crate::problem::adaptive_error::AdaptiveError;
 use crate::problem::capabilities::{Feature, Refusal};
 use crate::problem::checked::{check_load, check_tolerance};
@@ -28,6 +29,18 @@ use crate::solve::shared::Shared;
 
 /// Checks the problem and chooses its method.
 pub(super) fn plan<'a>(
+    problem: ContactProblem<'a>,
+    params: &SolveParams,
+    shared: Arc<Shared<'a>>,
+) -> Result<Plan<'a>, SolveError> {
+    if problem.is_shared() {
+        plan_here(problem, params, shared)
+    } else {
+        in_pool(|| plan_here(problem, params, shared))
+    }
+}
+
+fn plan_here<'a>(
     problem: ContactProblem<'a>,
     params: &SolveParams,
     shared: Arc<Shared<'a>>,

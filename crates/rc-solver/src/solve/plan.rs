@@ -15,6 +15,7 @@ use crate::paper::error::GaussSeidelError;
 use crate::paper::half_space::HalfSpace;
 use crate::paper::params::GaussSeidelParams;
 use crate::paper::solve::solve_gauss_seidel;
+use crate::parallel::in_pool;
 use crate::problem::contact_problem::ContactProblem;
 use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
@@ -84,6 +85,12 @@ impl<'a> Plan<'a> {
     /// [`SolveError::NotConverged`] with the best solution found. [`SolveError::Problem`] for heights that are not
     /// finite. [`SolveError::GaussSeidel`] if the Gauss-Seidel method cannot solve the problem.
     pub fn solve(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
+        // Ranks wait for each other, which threads of the pool must not.
+        if self.problem.is_shared() { self.solve_here(observer) } else { in_pool(|| self.solve_here(observer)) }
+    }
+
+    /// Solves the problem in this thread.
+    fn solve_here(self, observer: &dyn Observer) -> Result<Solution<'a>, SolveError> {
         let Self { problem, params, bound, chosen, reason, mut shared } = self;
         let name = problem.kernel.get().name();
         let asked = problem.bounds();
