@@ -61,6 +61,11 @@ impl GapGrid {
         BLOCK_ROWS * self.grid.nx()
     }
 
+    /// The pressure of an element alone that answers to its gap, in E*/λ.
+    pub(super) fn closing(&self) -> f64 {
+        self.near.closing
+    }
+
     /// The convolution in single precision.
     pub(super) fn convolution(&mut self) -> &mut Convolution<f32> {
         &mut self.convolution

@@ -110,7 +110,7 @@ fn climb<'a>(
         nested.announce(grid, above);
         let [better, mut pressure] =
             gap_side::improve(gap, grids.heights(above), (&mut on_grids[above..], true), (problem, mean));
-        gap_side::allow(&mut pressure, &better, grid.nx());
+        gap_side::allow(&mut pressure, &better, (grid.nx(), on_grids[above].closing()));
         history.levels.push(level_info(grid, 2));
         history.coarser = Some(LevelValues {
             rms_pressure: rms(&pressure, grid.nx()),

@@ -1,21 +1,22 @@
-//! Nearly full contact, solved for its gap on one grid.
+//! Heavy contact, solved for its gap on one grid.
 //!
-//! Where almost everything touches, the gap g is zero but in a few pools. With K = L⁻¹ (and no mean), the pressure is
+//! Where most of the surface is in contact, the gap g is zero but in pools. With K = L⁻¹ (and no mean), the pressure is
 //!
 //! ```text
 //! p(g) = σ0 + K (h + g),        p ≥ 0,  g ≥ 0,  g p = 0.
 //! ```
 //!
-//! The gap is interpolated from the coarser grid, and cycles correct it ([`crate::levels::gap_cycle`]). One application of K in double precision then gives p(g). Setting it to zero in the pools and where it is negative,
-//! and restoring the load nearby, makes a pressure p̂ that is admissible. With x = p̂ - p(g), the gap of p̂ is g + L x up to
-//! a constant, and the exact pressure p* and gap g* obey
+//! The gap is interpolated from the coarser grid, and cycles correct it ([`crate::levels::gap_cycle`]). One application
+//! of K in double precision then gives p(g). Taking p - k g where it is positive, with the k of an element whose gap
+//! closes alone, and zero elsewhere, and restoring the load nearby, makes a pressure p̂ that is admissible. With
+//! x = p̂ - p(g), the gap of p̂ is g + L x up to a constant, and the exact pressure p* and gap g* obey
 //!
 //! ```text
 //! ⟨p̂ - p*, L (p̂ - p*)⟩ = ⟨p̂ - p*, g + L x - g*⟩ ≤ ⟨p̂ g⟩ + ⟨p̂ - p*, L x⟩,
 //! ```
 //!
-//! because p* g* = 0 and no product of a pressure with a gap is negative. Since p̂ g = 0, the error of p̂ in the energy
-//! norm is at most ‖x‖ in that norm.
+//! because p* g* = 0 and no product of a pressure with a gap is negative. The error e of p̂ in the energy norm therefore
+//! has e² ≤ ⟨p̂ g⟩ + e ‖x‖, with ‖x‖ in that norm.
 
 use std::ops::Range;
 
@@ -96,11 +97,11 @@ pub(super) fn solve(
     let mut side = GapSide { grid: heights.grid(), heights: heights.values(), problem, mean, pressure, gap };
     let (mut last, mut n_cycles) = (f64::INFINITY, 0);
     loop {
-        let pieces = side.fresh(response);
+        let pieces = side.fresh(response, grids[0].closing());
         let error = side.displace(grids[0].convolution(), response, &pieces);
         let relative = (error / pieces.energy).sqrt();
-        // NaN does not fall.
-        if relative <= goal || n_cycles == MAX_CYCLES || !(relative < LEAST_FALL * last) {
+        let has_fallen = relative < LEAST_FALL * last;
+        if relative <= goal || n_cycles == MAX_CYCLES || !has_fallen {
             let (sums, applications) = (side.make_admissible(grids[0].convolution(), &pieces), 2 + 3 * n_cycles);
             let GapSide { pressure, gap, .. } = side;
             return GapSolution { pressure, gap, sums, error, applications };
@@ -125,6 +126,7 @@ struct Pieces {
     factors: Vec<Vec<f64>>,
     mean_gap: f64,
     energy: f64,
+    closing: f64,
 }
 
 impl Pieces {
@@ -132,7 +134,7 @@ impl Pieces {
     ///
     /// The loads are those of blocks, piece by piece. What a piece cannot take goes to the pieces around it, in squares of
     /// growing size. The cell takes the rest, so that the load becomes `whole`.
-    fn new(loads: &[Vec<[f64; 2]>], whole: f64, [mean_gap, energy]: [f64; 2]) -> Self {
+    fn new(loads: &[Vec<[f64; 2]>], whole: f64, [mean_gap, energy, closing]: [f64; 3]) -> Self {
         let mut factors: Vec<Vec<f64>> = loads.iter().map(|block| vec![1.0; block.len()]).collect();
         let (n_blocks, n_pieces) = (loads.len(), loads.first().map_or(0, Vec::len));
         let (mut rows, mut columns) = (1, 1);
@@ -152,12 +154,12 @@ impl Pieces {
         }
         let [_, after] = load_of(loads, &factors, (0..n_blocks, 0..n_pieces));
         factors.iter_mut().flatten().for_each(|factor| *factor *= whole / after);
-        Self { factors, mean_gap, energy }
+        Self { factors, mean_gap, energy, closing }
     }
 
     /// The pressure p̂ of an element in block `i`.
     fn admissible(&self, (i, x): (usize, usize), pressure: f64, gap: f64) -> f64 {
-        allowed(pressure, gap) * self.factors[i][x / PIECE]
+        allowed(pressure, gap, self.closing) * self.factors[i][x / PIECE]
     }
 }
 
@@ -173,15 +175,17 @@ fn load_of(loads: &[Vec<[f64; 2]>], factors: &[Vec<f64>], (blocks, pieces): (Ran
     sums
 }
 
-/// A pressure, or zero where it must not be.
-fn allowed(pressure: f64, gap: f64) -> f64 {
-    if gap > 0.0 { 0.0 } else { pressure.max(0.0) }
+/// The pressure of an element whose gap closes alone, or zero.
+///
+/// `closing` is the pressure by which the element itself answers to a gap of 1.
+fn allowed(pressure: f64, gap: f64, closing: f64) -> f64 {
+    (pressure - closing * gap).max(0.0)
 }
 
 /// Sets pressures to zero where they must not be.
-pub(super) fn allow(pressure: &mut [f64], gap: &[f64], nx: usize) {
+pub(super) fn allow(pressure: &mut [f64], gap: &[f64], (nx, closing): (usize, f64)) {
     parallel::for_each(pressure.chunks_mut(nx).zip(gap.chunks(nx)), |(pressure, gap)| {
-        pressure.iter_mut().zip(gap).for_each(|(p, g)| *p = allowed(*p, *g));
+        pressure.iter_mut().zip(gap).for_each(|(p, g)| *p = allowed(*p, *g, closing));
     });
 }
 
@@ -191,7 +195,7 @@ impl GapSide<'_> {
     }
 
     /// Computes p(g) afresh, in double precision.
-    fn fresh(&mut self, response: &GridResponse) -> Pieces {
+    fn fresh(&mut self, response: &GridResponse, closing: f64) -> Pieces {
         let (grid, len, mean) = (self.grid, self.len(), self.mean);
         let (gap, heights, h_mean) = (&self.gap, self.heights, self.problem.h_mean);
         let mut convolution = Convolution::new(grid);
@@ -210,33 +214,43 @@ impl GapSide<'_> {
                     *p = mean + row;
                     works += row * (h - h_mean + g);
                 }
-                (loads_of_block(grid.nx(), pressure, gap), [gap.iter().sum::<f64>(), 0.5 * works])
+                (loads_of_block((grid.nx(), closing), pressure, gap), [gap.iter().sum::<f64>(), 0.5 * works])
             });
         });
         let (loads, sums): (Vec<_>, Vec<[f64; 2]>) = tasks.into_results().into_iter().unzip();
         let n = grid.len() as f64;
-        Pieces::new(&loads, mean * n, [0, 1].map(|k| sums.iter().map(|sum| sum[k]).sum::<f64>() / n))
+        let [mean_gap, energy] = [0, 1].map(|k| sums.iter().map(|sum| sum[k]).sum::<f64>() / n);
+        Pieces::new(&loads, mean * n, [mean_gap, energy, closing])
     }
 
-    /// Computes the displacement by the change x to the pressure p̂, and returns ⟨x L x⟩.
+    /// Computes the displacement by the change x to the pressure p̂, and returns the bound on the error.
     fn displace(&self, quick: &mut Convolution<f32>, response: &GridResponse, pieces: &Pieces) -> f64 {
         let (len, nx, unit) = (self.len(), self.grid.nx(), self.problem.unit());
         let (pressure, gap) = (&self.pressure, &self.gap);
-        let change = |i: usize, at: usize| {
+        let admissible = |i: usize, at: usize| {
             let (p, g) = (pressure[i * len + at], gap[i * len + at]);
-            pieces.admissible((i, at % nx), p, g) - p
+            (pieces.admissible((i, at % nx), p, g), p, g)
         };
         write_rows(quick, &|i, rows| {
-            rows.iter_mut().enumerate().for_each(|(at, row)| *row = (change(i, at) / unit) as f32);
+            for (at, row) in rows.iter_mut().enumerate() {
+                let (allowed, p, _) = admissible(i, at);
+                *row = ((allowed - p) / unit) as f32;
+            }
         });
         response.factors.to_single().apply(quick);
         let tasks = Tasks::new(pressure.chunks(len));
         read_rows(quick, &|i, rows| {
             tasks.run(i, |_| {
-                rows.iter().enumerate().map(|(at, row)| change(i, at) * unit * f64::from(*row)).sum::<f64>()
+                rows.iter().enumerate().fold([0.0; 2], |[work, closed], (at, row)| {
+                    let (allowed, p, g) = admissible(i, at);
+                    [work + (allowed - p) * unit * f64::from(*row), closed + allowed * g]
+                })
             });
         });
-        tasks.into_results().into_iter().sum::<f64>() / self.grid.len() as f64
+        let sums = tasks.into_results();
+        let [work, closed] = [0, 1].map(|k| sums.iter().map(|sum| sum[k]).sum::<f64>() / self.grid.len() as f64);
+        // e² ≤ ⟨p̂ g⟩ + e ‖x‖.
+        (0.5 * work.sqrt() + (0.25 * work + closed).sqrt()).powi(2)
     }
 
     /// Makes the pressure p̂ and its gap, from the displacement of the change. Returns sums over the result.
@@ -262,13 +276,13 @@ impl GapSide<'_> {
 }
 
 /// The loads of the pieces of a block, before and after pressures are set to zero.
-fn loads_of_block(nx: usize, pressure: &[f64], gap: &[f64]) -> Vec<[f64; 2]> {
+fn loads_of_block((nx, closing): (usize, f64), pressure: &[f64], gap: &[f64]) -> Vec<[f64; 2]> {
     let mut loads = vec![[0.0; 2]; nx.div_ceil(PIECE)];
     for (pressure, gap) in pressure.chunks(nx).zip(gap.chunks(nx)) {
         for ((pressure, gap), [before, after]) in pressure.chunks(PIECE).zip(gap.chunks(PIECE)).zip(&mut loads) {
             for (p, g) in pressure.iter().zip(gap) {
                 *before += p;
-                *after += allowed(*p, *g);
+                *after += allowed(*p, *g, closing);
             }
         }
     }

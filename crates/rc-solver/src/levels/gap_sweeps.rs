@@ -18,8 +18,6 @@ use crate::tiles::operator::tile_values::TileValues;
 const RADIUS: usize = 6;
 
 /// Number of steps.
-///
-/// With ten steps, the deepest overlap that is left is half as deep.
 const STEPS: usize = 8;
 
 /// Elements along a side of the lattice that the kernel is computed on.
@@ -32,6 +30,8 @@ pub(super) struct NearKernel {
     taps: Taps<f32>,
     passes: TilePasses<f32>,
     arch: Arch,
+    /// The pressure of an element alone that answers to its gap, in E*/λ.
+    pub(super) closing: f64,
 }
 
 impl NearKernel {
@@ -39,7 +39,8 @@ impl NearKernel {
     pub(super) fn new(kernel: &dyn Kernel, grid: Grid, unit: f64) -> Self {
         let sizes = <f32 as Real>::SIZES[0];
         let (weights, reach) = (lattice_kernel(kernel), RADIUS as i32);
-        let factor = unit * grid.nx() as f64 / LATTICE as f64;
+        let ratio = grid.nx() as f64 / LATTICE as f64;
+        let (factor, closing) = (unit * ratio, ratio * weights[0][0]);
         let weight = |dx: i32, dy: i32| {
             let is_near = dx * dx + dy * dy <= reach * reach;
             if is_near { factor * weights[dy.unsigned_abs() as usize][dx.unsigned_abs() as usize] } else { 0.0 }
@@ -48,7 +49,7 @@ impl NearKernel {
             Instructions::Best => Arch::new(),
             Instructions::Scalar | Instructions::Sse => Arch::Scalar,
         };
-        Self { taps: Taps::of_weights(RADIUS, sizes.around, weight), passes: sizes.passes, arch }
+        Self { taps: Taps::of_weights(RADIUS, sizes.around, weight), passes: sizes.passes, arch, closing }
     }
 
     /// The pressures that these gaps add.
@@ -201,7 +202,7 @@ impl Pools {
 }
 
 /// Whether an element has a gap, or may open.
-pub(super) fn is_active<T: PartialOrd + From<i8>>(gap: T, pressure: T) -> bool {
+pub(super) fn is_active<T: Copy + PartialOrd + From<i8>>(gap: T, pressure: T) -> bool {
     gap > T::from(0) || pressure < T::from(0)
 }
 
