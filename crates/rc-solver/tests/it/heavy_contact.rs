@@ -123,7 +123,7 @@ fn by_rounds() -> SolveParams {
     SolveParams { method: Some(Method::Uniform), ..SolveParams::default() }
 }
 
-fn solved<'a>(heights: &'a Field, pressure: f64, params: SolveParams) -> Solution<'a> {
+fn solved(heights: &Field, pressure: f64, params: SolveParams) -> Solution<'_> {
     let problem = ContactProblem::new(heights, Control::MeanPressure(pressure)).with_kernel(&Spectral);
     problem.solve(&params, &Silent).expect("a solution")
 }
