@@ -5,6 +5,7 @@
 //! dynamic call and a lock without contention.
 
 use std::mem;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use rayon::prelude::*;
@@ -12,12 +13,29 @@ use rayon::prelude::*;
 /// Values in a block, unless something else decides.
 const BLOCK: usize = 4096;
 
-/// The result of `work`, which runs in a thread of the pool.
+/// The result of `work`, which runs in a thread of the pool, unless other work came first.
 ///
 /// A thread outside the pool hands over each pass and sleeps until it ends. On 64² elements, most of the time of a solve
-/// went there: from inside, it takes a third.
+/// went there: from inside, it takes a third. There is one such work at a time, because a thread that waits inside it for
+/// another one may take up whatever the pool is given: a second solve would stand on the stack of the first, and so on.
 pub(crate) fn in_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    if rayon::current_thread_index().is_some() || IS_TAKEN.swap(true, Ordering::Acquire) {
+        return work();
+    }
+    let _taken = Taken;
     rayon::scope(|_| work())
+}
+
+/// Whether a work is in the pool.
+static IS_TAKEN: AtomicBool = AtomicBool::new(false);
+
+/// Its end, also by a panic, which lets the next one in.
+struct Taken;
+
+impl Drop for Taken {
+    fn drop(&mut self) {
+        IS_TAKEN.store(false, Ordering::Release);
+    }
 }
 
 /// Calls `work` once for each index below `n`, in any order.
@@ -139,6 +157,15 @@ mod tests {
         assert_eq!(sums.len(), 143);
         assert!(values.iter().enumerate().all(|(i, &value)| value == i / 7));
         assert!(sums[..142].iter().enumerate().all(|(i, &sum)| sum == 7 * i));
+    }
+
+    #[test]
+    fn a_second_work_stays_outside_the_pool() {
+        let is_inside = || rayon::current_thread_index().is_some();
+        let second = || std::thread::scope(|s| s.spawn(|| in_pool(is_inside)).join().expect("it ends"));
+        // Another test may be in the pool, and end at any time.
+        let [first, second] = in_pool(|| [is_inside(), second()]);
+        assert!(!(first && second));
     }
 
     #[test]

@@ -13,7 +13,7 @@ use rc_fft::has_small_factors;
 /// Number of elements of the base grid for the shortest wave.
 ///
 /// The interpolation of heights to other levels does not need more.
-const BASE_ELEMENTS_PER_WAVE: usize = 4;
+pub(crate) const BASE_ELEMENTS_PER_WAVE: usize = 4;
 
 /// Minimum number of elements along the longer side of the base grid.
 pub(super) const SMALLEST_BASE: usize = 64;

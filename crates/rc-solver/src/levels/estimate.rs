@@ -89,12 +89,22 @@ impl Estimate {
     /// (docs/constants.md).
     pub(crate) const GREATEST_TILE_FRACTION: f64 = 0.35;
 
+    /// The contact area under a mean pressure, from the slopes of coarse heights. It may be above 1.
+    pub(crate) fn area_under(pressure: f64, (heights, boundary): (&Field, Boundary), hardness: f64) -> f64 {
+        (PROPORTIONALITY * pressure / rms_slope(heights, boundary)).max(pressure / hardness)
+    }
+
+    /// Time of the adaptive method without border levels, in the time of the uniform method.
+    pub(crate) fn relative_time(area_fraction: f64, n_base: f64, n_finest: f64) -> f64 {
+        (FIXED_TIME + TIME_OF_BASE * n_base) / n_finest + TIME_OF_AREA * area_fraction
+    }
+
     /// `period` has the elements of the base grid that operators work on.
     pub(crate) fn new(heights: &Heights<'_>, border_level: usize, problem: &Problem, period: [usize; 2]) -> Self {
         let (base, boundary) = (heights.base(), problem.support.boundary);
         let of_load = |pressure: f64| PROPORTIONALITY * pressure / rms_slope(base, boundary);
         let area = match problem.bounds.control {
-            Control::MeanPressure(pressure) => of_load(pressure).max(pressure / problem.bounds.hardness),
+            Control::MeanPressure(pressure) => Self::area_under(pressure, (base, boundary), problem.bounds.hardness),
             // The undeformed surfaces overlap on a larger area than they touch on. The penetration of a patch or a layer
             // may be larger than all heights.
             Control::Penetration(penetration) => {
@@ -121,8 +131,7 @@ impl Estimate {
             tile_fraction,
             cells: n_cells,
             work: with_borders(MORE_WORK_PER_BORDER_LEVEL),
-            relative_time: (FIXED_TIME + TIME_OF_BASE * base.grid().len() as f64) / n_finest
-                + TIME_OF_AREA * area_fraction,
+            relative_time: Self::relative_time(area_fraction, base.grid().len() as f64, n_finest),
             adaptive_bytes: cell_bytes + BYTES_PER_PLACE * n_finest + base_bytes(period),
         }
     }

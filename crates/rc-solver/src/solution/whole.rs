@@ -192,7 +192,7 @@ impl<'a> Solution<'a> {
 
     fn with_penetration_error(&self) -> &(Observables, f64) {
         self.computed.observables.get_or_init(|| {
-            let observables = self.solved.observables();
+            let observables = self.here_or_in_pool(|| self.solved.observables());
             let of_depth = observables.mean_gap_error.hypot(observables.hidden_depth_error(self.info()));
             let error = self.summit.excess + of_depth;
             match self.how.asked.control {

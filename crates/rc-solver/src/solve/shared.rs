@@ -35,6 +35,11 @@ impl<'a> Shared<'a> {
         Ok(self.tiles.get().expect("it was set"))
     }
 
+    /// Whether the heights of the adaptive method are prepared.
+    pub(crate) fn has_tiles(&self) -> bool {
+        self.tiles.get().is_some()
+    }
+
     /// Frees the heights of the adaptive method.
     pub(crate) fn forget_tiles(&mut self) {
         self.tiles.take();
