@@ -15,10 +15,10 @@ use std::sync::{Arc, Mutex};
 
 use rayon::prelude::*;
 use rc_core::Grid;
-use realfft::{ComplexToReal, RealToComplex};
 use rustfft::Fft;
 use rustfft::num_complex::Complex;
 
+use crate::rows::{ROWS, RowBuffers, RowPlans};
 use crate::{SymbolTable, TransformReal, WaveTable};
 
 /// Number of rows in a block of a [`Convolution`]. A convolution requests and returns one block at a time. The last
@@ -62,8 +62,7 @@ pub struct Convolution<T> {
     grid: Grid,
     /// Elements of the transforms along x and y, at least as many as the grid has.
     period: [usize; 2],
-    row_forward: Arc<dyn RealToComplex<T>>,
-    row_inverse: Arc<dyn ComplexToReal<T>>,
+    row_plans: RowPlans<T>,
     column_forward: Arc<dyn Fft<T>>,
     column_inverse: Arc<dyn Fft<T>>,
     /// Row spectra in tiles. The order is block of rows, panel of columns, row, column.
@@ -75,10 +74,9 @@ pub struct Convolution<T> {
 struct Workspace<T> {
     /// Rows of one block.
     rows: Vec<T>,
-    /// A row followed by zeros, or nothing when the transform is as long as the row.
-    padded: Vec<T>,
-    /// Spectrum of one row.
-    row_spectrum: Vec<Complex<T>>,
+    row_buffers: RowBuffers<T>,
+    /// Spectra of the rows that are transformed at once.
+    row_spectra: Vec<Complex<T>>,
     /// One panel, with contiguous columns.
     panel: Vec<Complex<T>>,
     scratch: Vec<Complex<T>>,
@@ -108,28 +106,22 @@ impl<T: TransformReal> Convolution<T> {
     pub fn padded(grid: Grid, period: [usize; 2]) -> Self {
         let [nx, ny] = period;
         assert!(nx >= grid.nx() && ny >= grid.ny(), "a period of {nx} x {ny} elements for {grid}");
-        let (row_forward, row_inverse) = (T::real_forward(nx), T::real_inverse(nx));
+        let row_plans = RowPlans::new(nx);
         let (column_forward, column_inverse) = (T::complex_forward(ny), T::complex_inverse(ny));
-        let scratch_len = [
-            row_forward.get_scratch_len(),
-            row_inverse.get_scratch_len(),
-            column_forward.get_inplace_scratch_len(),
-            column_inverse.get_inplace_scratch_len(),
-        ];
-        let scratch_len = scratch_len.into_iter().max().unwrap_or(0);
+        let scratch_len = column_forward.get_inplace_scratch_len().max(column_inverse.get_inplace_scratch_len());
         let n_columns = nx / 2 + 1;
         let zero = Complex::new(T::zero(), T::zero());
         let workspace = || Workspace {
             rows: vec![T::zero(); BLOCK_ROWS * grid.nx()],
-            padded: if nx > grid.nx() { vec![T::zero(); nx] } else { Vec::new() },
-            row_spectrum: vec![zero; n_columns],
+            row_buffers: row_plans.buffers(),
+            row_spectra: vec![zero; ROWS * n_columns],
             panel: vec![zero; PANEL_COLUMNS * (ny + PANEL_PADDING)],
             scratch: vec![zero; scratch_len],
         };
         let workspaces = (0..rayon::current_num_threads()).map(|_| Mutex::new(workspace())).collect();
         // All threads write it, because a large spectrum is new memory.
         let spectrum = rayon::iter::repeat_n(zero, n_columns * grid.ny()).collect();
-        Self { grid, period, row_forward, row_inverse, column_forward, column_inverse, spectrum, workspaces }
+        Self { grid, period, row_plans, column_forward, column_inverse, spectrum, workspaces }
     }
 
     /// The grid.
@@ -176,21 +168,22 @@ impl<T: TransformReal> Convolution<T> {
         R: Send,
     {
         let (nx, n_columns) = (self.grid.nx(), self.period[0] / 2 + 1);
-        let (row_forward, workspaces) = (&self.row_forward, &self.workspaces);
+        let (row_plans, workspaces) = (&self.row_plans, &self.workspaces);
         let blocks = self.spectrum.par_chunks_mut(BLOCK_ROWS * n_columns);
         blocks
             .zip_eq(sources)
             .map(|(block, source)| {
                 let n_rows = block.len() / n_columns;
                 let mut workspace = lock(workspaces);
-                let Workspace { rows, padded, row_spectrum, scratch, .. } = &mut *workspace;
+                let Workspace { rows, row_buffers, row_spectra, .. } = &mut *workspace;
                 let rows = &mut rows[..n_rows * nx];
                 let written = write(source, rows);
-                for (iy, row) in rows.chunks_exact_mut(nx).enumerate() {
-                    let row = with_zeros(row, padded);
-                    let transformed = row_forward.process_with_scratch(row, row_spectrum, scratch);
-                    transformed.expect("buffers have the lengths of the plan");
-                    to_tiles(row_spectrum, block, iy);
+                for (iy, rows) in (0..).step_by(ROWS).zip(rows.chunks(ROWS * nx)) {
+                    let spectra = &mut row_spectra[..rows.len() / nx * n_columns];
+                    row_plans.forward(rows, nx, spectra, row_buffers);
+                    for (iy, spectrum) in (iy..).zip(spectra.chunks_exact(n_columns)) {
+                        to_tiles(spectrum, block, iy);
+                    }
                 }
                 written
             })
@@ -250,28 +243,20 @@ impl<T: TransformReal> Convolution<T> {
         R: Send,
     {
         let (nx, n_columns) = (self.grid.nx(), self.period[0] / 2 + 1);
-        let is_even = self.period[0].is_multiple_of(2);
         let blocks = self.spectrum.par_chunks(BLOCK_ROWS * n_columns);
         blocks
             .zip_eq(sinks)
             .map(|(block, sink)| {
                 let n_rows = block.len() / n_columns;
                 let mut workspace = lock(&self.workspaces);
-                let Workspace { rows, padded, row_spectrum, scratch, .. } = &mut *workspace;
+                let Workspace { rows, row_buffers, row_spectra, .. } = &mut *workspace;
                 let rows = &mut rows[..n_rows * nx];
-                for (iy, row) in rows.chunks_exact_mut(nx).enumerate() {
-                    from_tiles(block, iy, row_spectrum);
-                    // These parts are zero up to rounding, but the plan requires exact zeros.
-                    row_spectrum[0].im = T::zero();
-                    if is_even {
-                        row_spectrum[n_columns - 1].im = T::zero();
+                for (iy, rows) in (0..).step_by(ROWS).zip(rows.chunks_mut(ROWS * nx)) {
+                    let spectra = &mut row_spectra[..rows.len() / nx * n_columns];
+                    for (iy, spectrum) in (iy..).zip(spectra.chunks_exact_mut(n_columns)) {
+                        from_tiles(block, iy, spectrum);
                     }
-                    let whole = if padded.is_empty() { &mut *row } else { &mut padded[..] };
-                    let transformed = self.row_inverse.process_with_scratch(row_spectrum, whole, scratch);
-                    transformed.expect("buffers have the lengths of the plan");
-                    if !padded.is_empty() {
-                        row.copy_from_slice(&padded[..nx]);
-                    }
+                    self.row_plans.inverse(spectra, rows, nx, row_buffers);
                 }
                 read(sink, rows)
             })
@@ -289,17 +274,6 @@ impl<T> std::fmt::Debug for Convolution<T> {
 fn lock<T>(workspaces: &[Mutex<Workspace<T>>]) -> std::sync::MutexGuard<'_, Workspace<T>> {
     let thread = rayon::current_thread_index().unwrap_or(0) % workspaces.len();
     workspaces[thread].lock().unwrap_or_else(std::sync::PoisonError::into_inner)
-}
-
-/// Copies `row` and zeros behind it into `padded`. Returns `row` itself if `padded` is empty.
-fn with_zeros<'a, T: TransformReal>(row: &'a mut [T], padded: &'a mut [T]) -> &'a mut [T] {
-    if padded.is_empty() {
-        return row;
-    }
-    let (values, zeros) = padded.split_at_mut(row.len());
-    values.copy_from_slice(row);
-    zeros.fill(T::zero());
-    padded
 }
 
 /// Writes row `iy` of a block to its tiles, one for each panel.
@@ -370,10 +344,12 @@ fn scale_column<T: TransformReal>(column: &mut [Complex<T>], symbol: &[T]) {
 mod tests {
     use super::*;
 
-    /// A kernel without a period, summed term by term.
+    /// Periods of grids, and periods so long that the sum has no images.
     #[test]
-    fn a_padded_convolution_is_the_sum_without_images() {
-        for (nx, ny, px, py) in [(12, 10, 24, 20), (5, 33, 9, 65), (16, 16, 32, 31), (1, 7, 1, 16), (40, 3, 81, 6)] {
+    fn a_convolution_is_the_sum_over_its_period() {
+        let padded = [(12, 10, 24, 20), (5, 33, 9, 65), (16, 16, 32, 31), (1, 7, 1, 16), (40, 3, 81, 6)];
+        let periodic = [(12, 10), (19, 18), (37, 33), (1, 9), (101, 3), (9, 1)].map(|(nx, ny)| (nx, ny, nx, ny));
+        for (nx, ny, px, py) in padded.into_iter().chain(periodic) {
             let grid = Grid::new(nx, ny).expect("a grid");
             let around = Grid::in_cell(px, py, 1.0).expect("a grid");
             let kernel = |dx: usize, dy: usize| 1.0 / (1.0 + (dx * dx) as f64 + (dy * dy) as f64);
@@ -397,7 +373,8 @@ mod tests {
                 );
             }
             for (i, found) in found.iter().enumerate() {
-                let of = |(j, p): (usize, &f64)| p * kernel((i % nx).abs_diff(j % nx), (i / nx).abs_diff(j / nx));
+                let (dx, dy) = (|j| (i % nx).abs_diff(j % nx), |j| (i / nx).abs_diff(j / nx));
+                let of = |(j, p): (usize, &f64)| p * kernel(nearest(dx(j), px), nearest(dy(j), py));
                 let expected: f64 = source.iter().enumerate().map(of).sum();
                 assert!((found - expected).abs() < 1e-12 * expected, "{grid} in {px} x {py}: {found} for {expected}");
             }

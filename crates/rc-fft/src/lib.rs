@@ -41,6 +41,7 @@ mod line_convolution;
 mod lines;
 mod plan;
 mod real_by_complex;
+mod rows;
 mod symbol_table;
 mod wave_table;
 

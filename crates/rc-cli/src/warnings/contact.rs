@@ -24,13 +24,14 @@ const FEW_ELEMENTS_SPECTRAL: f64 = 2.25;
 /// All doubts that are known before the solve: about the surface, the load and the grid.
 pub(crate) fn before(surface: &LoadedSurface, contact: &ContactSetup) -> Vec<Warning> {
     let mut found = surface.warnings.clone();
+    let step = surface.map().map(|(map, _)| BorderStep::of(map));
     match surface.form {
         // Range and slope of what the shape is added to are doubted already.
         Some(form) => found.extend(steep(form.slope())),
-        None => found.extend(shape(surface, contact).warnings()),
+        None => found.extend(shape(surface, contact, step).warnings()),
     }
-    if let (Some((map, _)), Boundary::Periodic) = (surface.map(), contact.boundary) {
-        found.extend(border(map));
+    if let (Some((map, _)), Some(step), Boundary::Periodic) = (surface.map(), step, contact.boundary) {
+        found.extend(border(map.grid(), step));
     }
     if let Control::MeanPressure(mean) = contact.control {
         found.extend(mean_pressure(mean, contact));
@@ -40,9 +41,9 @@ pub(crate) fn before(surface: &LoadedSurface, contact: &ContactSetup) -> Vec<War
 }
 
 /// Steepness and range of the surface.
-fn shape(surface: &LoadedSurface, contact: &ContactSetup) -> Shape {
+fn shape(surface: &LoadedSurface, contact: &ContactSetup, step: Option<BorderStep>) -> Shape {
     // The border of a map that is not periodic is no slope of the surface.
-    let jumps = surface.map().is_some_and(|(map, _)| !BorderStep::of(map).is_periodic());
+    let jumps = step.is_some_and(|step| !step.is_periodic());
     let boundary = if jumps { Boundary::Free } else { contact.boundary };
     let [rms_height, rms_slope] = surface.height_and_slope(boundary);
     let cell = contact.units.cell();

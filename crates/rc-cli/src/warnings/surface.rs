@@ -239,9 +239,8 @@ pub(crate) fn mirrored(map: &HeightMap, treatments: &[Treatment]) -> Option<Warn
 }
 
 /// A doubt about a map that is solved as if it repeated itself.
-pub(crate) fn border(map: &Field) -> Option<Warning> {
-    let step = BorderStep::of(map);
-    let is_profile = map.grid().ny() == 1;
+pub(crate) fn border(grid: Grid, step: BorderStep) -> Option<Warning> {
+    let is_profile = grid.ny() == 1;
     let text = || {
         format!(
             "the heights do not repeat themselves: the step across the border is {} times that between neighbours; {}",

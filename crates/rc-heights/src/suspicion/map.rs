@@ -1,5 +1,6 @@
 //! A map with the deviations of its points from their neighbours.
 
+use rayon::prelude::*;
 use rc_core::Field;
 
 use super::medians::{median, medians_of_eight, robust_deviation, upper_deviation};
@@ -59,14 +60,15 @@ impl<'a> Map<'a> {
     }
 
     /// Values of a function at points that are spread over the map. `NaN` is omitted.
-    fn sampled(&self, value: impl Fn(isize, isize) -> f64) -> Vec<f64> {
+    fn sampled(&self, value: impl Fn(isize, isize) -> f64 + Sync) -> Vec<f64> {
         let n = self.values.len();
         let at = |i: usize| {
             // Steps of the golden ratio do not follow any pattern of the map.
             let i = if n <= SAMPLE { i } else { ((i as f64 * 0.618_033_988_749_894_9).fract() * n as f64) as usize };
             ((i % self.nx as usize) as isize, (i / self.nx as usize) as isize)
         };
-        (0..n.min(SAMPLE)).map(at).map(|(x, y)| value(x, y)).filter(|value| value.is_finite()).collect()
+        let all = (0..n.min(SAMPLE)).into_par_iter().map(at).map(|(x, y)| value(x, y));
+        all.filter(|value| value.is_finite()).collect()
     }
 
     /// The height of a neighbour above a plane of the mean slope through the point.
@@ -97,38 +99,37 @@ impl<'a> Map<'a> {
         if deviation > self.smallest {
             return Some(upper_deviation(&mut deviations).clamp(deviation, MOST_TAIL * deviation));
         }
-        let mut others = Vec::new();
-        self.each_beyond(self.smallest, |x, y| others.push(self.deviation(x, y)));
+        let mut others: Vec<f64> = self.beyond(self.smallest).into_iter().map(|[x, y]| self.deviation(x, y)).collect();
         robust_deviation(&mut others, 0.0)
     }
 
-    /// Calls `found` for each point that deviates from the median of its neighbours by more than `threshold`.
-    pub(super) fn each_beyond(&self, threshold: f64, mut found: impl FnMut(isize, isize)) {
-        let slow = |x: isize, y: isize, found: &mut dyn FnMut(isize, isize)| {
-            if self.deviation(x, y).abs() > threshold {
-                found(x, y);
-            }
-        };
-        for y in 0..self.ny {
-            let is_inside = y > 0 && y + 1 < self.ny;
-            let mut x = 0;
-            while x < self.nx {
-                if is_inside && x > 0 && x + (LANES as isize) < self.nx {
-                    match self.lanes(x, y) {
-                        Some(deviations) => {
-                            for (i, deviation) in deviations.into_iter().enumerate() {
-                                if deviation.abs() > threshold {
-                                    found(x + i as isize, y);
-                                }
-                            }
-                        }
-                        None => (x..x + LANES as isize).for_each(|x| slow(x, y, &mut found)),
-                    }
-                    x += LANES as isize;
-                } else {
-                    slow(x, y, &mut found);
-                    x += 1;
+    /// The points that deviate from the median of their neighbours by more than `threshold`, row by row.
+    pub(super) fn beyond(&self, threshold: f64) -> Vec<[isize; 2]> {
+        let of_row = |y| {
+            let mut found = Vec::new();
+            self.each_deviation(y, |x, deviation| {
+                if deviation.abs() > threshold {
+                    found.push([x, y]);
                 }
+            });
+            found
+        };
+        (0..self.ny).into_par_iter().flat_map_iter(of_row).collect()
+    }
+
+    /// Calls `found` with the deviation of each point of a row.
+    fn each_deviation(&self, y: isize, mut found: impl FnMut(isize, f64)) {
+        let is_inside = y > 0 && y + 1 < self.ny;
+        let mut x = 0;
+        while x < self.nx {
+            let many = is_inside && x > 0 && x + (LANES as isize) < self.nx;
+            if let Some(deviations) = if many { self.lanes(x, y) } else { None } {
+                (x..).zip(deviations).for_each(|(x, deviation)| found(x, deviation));
+                x += LANES as isize;
+            } else {
+                let end = if many { x + LANES as isize } else { x + 1 };
+                (x..end).for_each(|x| found(x, self.deviation(x, y)));
+                x = end;
             }
         }
     }

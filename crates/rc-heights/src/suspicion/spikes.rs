@@ -86,7 +86,7 @@ fn usual(heights: &Field, periodic: bool) -> Option<(Map<'_>, f64)> {
 /// Places and heights of the spikes that deviate by more than `threshold`, row by row.
 fn rare(map: &Map<'_>, threshold: f64) -> Vec<([isize; 2], f64)> {
     let (mut alone, mut others) = (Vec::<([isize; 2], f64)>::new(), Vec::new());
-    map.each_beyond(CANDIDATE * threshold, |x, y| {
+    for [x, y] in map.beyond(CANDIDATE * threshold) {
         let near = Near::new(map, [x, y]);
         match near.spike(threshold) {
             Some(height) => alone.push(([x, y], height)),
@@ -95,7 +95,7 @@ fn rare(map: &Map<'_>, threshold: f64) -> Vec<([isize; 2], f64)> {
             }
             None => {}
         }
-    });
+    }
     // The neighbours of a spike deviate because of it, and points with neighbours on one side because of the slope.
     let places: HashSet<[isize; 2]> = alone.iter().map(|(at, _)| *at).collect();
     let is_beside = |[x, y]: [isize; 2]| square(2).any(|[dx, dy]| places.contains(&[x + dx, y + dy]));

@@ -106,10 +106,13 @@ pub fn marks(heights: &Field) -> Option<Mark> {
     found.into_iter().max_by_key(|mark| mark.count)
 }
 
-/// The lowest or highest value, if it is far from the others.
+/// The lowest or highest value, if it is far from the others and one of them is a mark.
 #[expect(clippy::float_cmp, reason = "all points with a mark have the same value")]
 fn farthest<I: Iterator<Item = f64>>(values: &impl Fn() -> I) -> Option<Mark> {
     let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    if !is_mark(low) && !is_mark(high) {
+        return None;
+    }
     // The next values after the ends.
     let (mut second, mut last, mut counts) = (f64::INFINITY, f64::NEG_INFINITY, [0; 2]);
     for value in values() {

@@ -4,6 +4,7 @@ use crate::descent::layout::BlockLayout;
 use crate::descent::operators::{PreconditionedOperator, read_blocks, write_blocks};
 use crate::descent::rows;
 use crate::descent::rows::{ClippedStep, ConjugateStep};
+use crate::descent::values::Values;
 use crate::parallel;
 use crate::problem::steps::Step;
 
@@ -44,7 +45,7 @@ pub(crate) struct DirectionSums {
 /// The gradient of the energy, from which slopes follow.
 pub(crate) enum Slope<'a> {
     /// The gap minus the gap of elements in contact.
-    Gap { gap: &'a [f64], zero_gap: f64 },
+    Gap { gap: &'a Values, zero_gap: f64 },
     /// The residual itself.
     Residual(&'a [f32]),
 }
@@ -159,7 +160,8 @@ impl ConjugateDirections {
             let (direction, active) = (&direction[here.clone()], &active[here.clone()]);
             match slope {
                 Slope::Gap { gap, zero_gap } => {
-                    let gradient = gap[here].iter().map(|g| g - zero_gap);
+                    let gap = gap.part(here);
+                    let gradient = gap.iter().map(|g| g - zero_gap);
                     rows::keep_displacement(read, direction, gradient, active, kept)
                 }
                 Slope::Residual(residual) => {

@@ -2,8 +2,8 @@
 
 use crate::descent::layout::BlockLayout;
 use crate::descent::operators::{BlockOperator, read_blocks, write_blocks};
-use crate::descent::rows::ElementValues;
 use crate::descent::sums::GapSums;
+use crate::descent::values::ElementVectors;
 use crate::parallel;
 use crate::problem::checked::Problem;
 use crate::problem::steps::Step;
@@ -12,15 +12,16 @@ use crate::problem::steps::Step;
 pub(crate) fn fresh_gap(
     operator: &mut (impl BlockOperator<f64> + ?Sized),
     problem: &Problem,
-    elements: ElementValues<'_>,
+    elements: ElementVectors<'_>,
     empty: GapSums,
 ) -> GapSums {
     let _running = Step::FreshGaps.begin();
     let (layout, offset) = (operator.layout(), problem.offset());
-    write_blocks(operator, elements.pressure.chunks(layout.len()), |p, values| values.copy_from_slice(p));
+    let (pressure, n) = (&*elements.pressure, elements.pressure.len());
+    write_blocks(operator, layout.ranges(n), |block, values| values.copy_from_slice(&pressure.part(block)));
     operator.apply();
     let sums = read_blocks(operator, elements.blocks(layout.len()), |block, displacement| {
-        block.fresh_gap(displacement, offset, empty)
+        block.with_heights(|values| values.fresh_gap(displacement, offset, empty))
     });
     GapSums::total(&layout, sums)
 }
@@ -30,9 +31,12 @@ pub(crate) fn rescale(
     scale: f64,
     layout: &BlockLayout,
     problem: &Problem,
-    elements: ElementValues<'_>,
+    elements: ElementVectors<'_>,
     empty: GapSums,
 ) -> GapSums {
     let offset = problem.offset();
-    GapSums::total(layout, parallel::map(elements.blocks(layout.len()), |block| block.rescale(scale, offset, empty)))
+    let sums = parallel::map(elements.blocks(layout.len()), |block| {
+        block.with_heights(|values| values.rescale(scale, offset, empty))
+    });
+    GapSums::total(layout, sums)
 }

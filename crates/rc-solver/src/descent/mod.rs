@@ -10,7 +10,8 @@
 //! Corrections are directions, their displacements and residuals. They are in single precision, while pressure and gap
 //! are in double precision. Each correction is added to exact values, as in iterative refinement. A fresh application
 //! of L in double precision then removes the errors of single precision. All corrections are relative to the height
-//! range H, so no scene underflows.
+//! range H, so no scene underflows. On very many tiles with a loose tolerance, pressure and gap are in single precision
+//! too ([`values::Values`]).
 
 pub(crate) mod certificate;
 pub(crate) mod contact_element;
@@ -36,3 +37,4 @@ pub(crate) mod state;
 pub(crate) mod stiffness;
 pub(crate) mod stop;
 pub(crate) mod sums;
+pub(crate) mod values;

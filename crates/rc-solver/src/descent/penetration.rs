@@ -3,9 +3,10 @@
 //! It is free, like any other wave of the pressure.
 
 use crate::descent::operators::{read_blocks, write_blocks};
-use crate::descent::rows::{self, ElementValues};
+use crate::descent::rows;
 use crate::descent::state::{Descent, Follows};
 use crate::descent::sums::GapSums;
+use crate::descent::values::ElementVectors;
 use crate::parallel;
 use crate::problem::control::Control;
 
@@ -37,7 +38,7 @@ impl Descent<'_> {
             None => self.settle(sums),
             Some(_) if self.problem.support.is_none() && sums.n_contact >= self.n_cell() => {
                 let less = self.too_much_everywhere();
-                parallel::update(&mut self.pressure, |p| *p -= less);
+                self.pressure.update(|p| *p -= less);
                 let sums = self.rescale(1.0);
                 self.within_bounds(sums)
             }
@@ -52,9 +53,9 @@ impl Descent<'_> {
     fn too_much_everywhere(&self) -> f64 {
         match self.problem.bounds.control {
             Control::Penetration(penetration) if penetration >= self.problem.h_max - self.problem.h_mean => {
-                parallel::maximum(&self.pressure, 0.0) - self.problem.bounds.hardness
+                parallel::maximum(&self.pressure.all(), 0.0) - self.problem.bounds.hardness
             }
-            _ => self.layout.minimum(&self.pressure),
+            _ => self.layout.minimum(&self.pressure.all()),
         }
     }
 
@@ -66,17 +67,17 @@ impl Descent<'_> {
         let (unit, range) = (self.problem.unit().recip(), self.problem.unit());
         self.info.operator_applications += 1;
         let corrections = &mut *self.operators.corrections;
-        write_blocks(corrections, self.pressure.chunks(len), |pressure, values| {
-            for (&p, value) in pressure.iter().zip(values) {
+        let (pressure, gap, n) = (&self.pressure, &self.gap, self.pressure.len());
+        write_blocks(corrections, self.layout.ranges(n), |block, values| {
+            for (&p, value) in pressure.part(block).iter().zip(values) {
                 *value = (bounds.direction(p) * unit) as f32;
             }
         });
         corrections.apply();
         let kept = self.directions.displacements_mut(len);
-        let blocks = self.pressure.chunks(len).zip(self.gap.chunks(len)).zip(kept);
-        let products = read_blocks(corrections, blocks, |((pressure, gap), kept), displacement| {
+        let products = read_blocks(corrections, self.layout.ranges(n).zip(kept), |(block, kept), displacement| {
             kept.copy_from_slice(displacement);
-            rows::products(pressure, gap, displacement, |p| bounds.direction(p))
+            rows::products(&pressure.part(block.clone()), &gap.part(block), displacement, |p| bounds.direction(p))
         });
         let [whole, with_gap, with_displacement] = self.layout.total(products);
         let curvature = range * with_displacement;
@@ -87,14 +88,16 @@ impl Descent<'_> {
         }
         let factor = (-with_gap / curvature).clamp(STEPS[0], STEPS[1]);
         let (offset, empty) = (self.problem.offset(), GapSums::empty(self.pressed, bounds.hardness));
-        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        let elements = ElementVectors { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let blocks = elements.blocks(len).zip(self.directions.added().chunks(len));
         let sums = parallel::map(blocks, |(block, displacement)| {
-            for ((p, g), u) in block.pressure.iter_mut().zip(block.gap.iter_mut()).zip(displacement) {
-                *p = bounds.along(*p, factor);
-                *g += factor * range * f64::from(*u);
-            }
-            block.rescale(1.0, offset, empty)
+            block.with_heights(|values| {
+                for ((p, g), u) in values.pressure.iter_mut().zip(values.gap.iter_mut()).zip(displacement) {
+                    *p = bounds.along(*p, factor);
+                    *g += factor * range * f64::from(*u);
+                }
+                values.rescale(1.0, offset, empty)
+            })
         });
         let sums = GapSums::total(&self.layout, sums);
         self.pressed = sums.next_pressed();
@@ -131,14 +134,16 @@ impl Descent<'_> {
         let len = self.layout.len();
         self.info.operator_applications += 1;
         let corrections = &mut *self.operators.corrections;
-        let elements = || self.pressure.chunks(len).zip(self.directions.active.chunks(len));
-        write_blocks(corrections, elements(), |(pressure, active), values| {
-            for ((&p, &active), value) in pressure.iter().zip(active).zip(values) {
+        let (all, layout) = (&self.pressure, &self.layout);
+        let elements = || layout.ranges(all.len()).zip(self.directions.active.chunks(len));
+        write_blocks(corrections, elements(), |(block, active), values| {
+            for ((&p, &active), value) in all.part(block).iter().zip(active).zip(values) {
                 *value = if chosen(p, active) { 1.0 } else { 0.0 };
             }
         });
         corrections.apply();
-        let sums = read_blocks(corrections, elements(), |(pressure, active), displacement| {
+        let sums = read_blocks(corrections, elements(), |(block, active), displacement| {
+            let pressure = all.part(block);
             let of_chosen =
                 pressure.iter().zip(active).zip(displacement).filter(|((p, active), _)| chosen(**p, **active));
             [of_chosen.map(|(_, &v)| f64::from(v)).sum()]

@@ -2,14 +2,16 @@
 
 use rc_core::Observer;
 
+use crate::descent::layout::BlockLayout;
 use crate::descent::load::project_to_load;
 use crate::descent::operators::{read_blocks, write_blocks};
 use crate::descent::penetration::STEPS;
-use crate::descent::rows::{self, ElementValues, Gradient};
+use crate::descent::rows::{self, ClippedStep, ElementValues, Gradient};
 use crate::descent::shares::{Load, Shares, Squares};
 use crate::descent::state::{Descent, Follows};
 use crate::descent::stop::{Stopped, unless_stopped};
 use crate::descent::sums::GapSums;
+use crate::descent::values::ElementVectors;
 use crate::parallel;
 use crate::problem::steps::Step;
 
@@ -76,9 +78,9 @@ impl Descent<'_> {
         self.operators.corrections.apply();
         let (offset, range) = (self.problem.offset(), self.problem.unit());
         let (len, empty) = (self.layout.len(), GapSums::empty(self.pressed, self.problem.bounds.hardness));
-        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        let elements = ElementVectors { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let sums = read_blocks(&*self.operators.corrections, elements.blocks(len), |block, displacement| {
-            block.add_clipped(displacement, range, scale, offset, empty)
+            block.with_heights(|values| values.add_clipped(displacement, range, scale, offset, empty))
         });
         let sums = GapSums::total(&self.layout, sums);
         self.pressed = sums.next_pressed();
@@ -97,7 +99,8 @@ impl Descent<'_> {
     /// Whether the hardness may limit pressures when the loads of squares are shared out.
     fn may_reach_hardness(&self, shares: &Shares) -> bool {
         let bounds = self.problem.bounds;
-        bounds.is_limited() && MARGIN * shares.maximum() * parallel::maximum(&self.pressure, 0.0) >= bounds.hardness
+        bounds.is_limited()
+            && MARGIN * shares.maximum() * parallel::maximum(&self.pressure.all(), 0.0) >= bounds.hardness
     }
 
     /// Brings the pressure between its bounds and to its load, in the order of gaps.
@@ -105,7 +108,11 @@ impl Descent<'_> {
     /// Before gaps are known, depths are in their place.
     pub(crate) fn project_to_load(&mut self) {
         let (n_cell, layout) = (self.n_cell(), self.layout.clone());
-        project_to_load(self.problem, n_cell, &layout, &mut self.pressure, Some(&self.gap));
+        if self.pressure.is_single() {
+            let scale = self.scale_to_load(self.pressure.sum(&layout));
+            return self.pressure.update(|p| *p *= scale);
+        }
+        project_to_load(self.problem, n_cell, &layout, self.pressure.all_mut(), Some(&self.gap.all()));
     }
 
     /// Projects a start that has pressures beyond the hardness. The gap comes from a fresh application of L.
@@ -121,26 +128,14 @@ impl Descent<'_> {
         let (len, squares, layout) = (self.layout.len(), self.squares(), &self.layout);
         let spacing = self.info.grid.spacing();
         let joining = if is_heavy { ALONE / (spacing.x * spacing.y).sqrt() } else { 0.0 };
-        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        let elements = ElementVectors { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let blocks = elements.blocks(len).zip(self.directions.clipped_steps(len)).enumerate();
-        let of_blocks = parallel::map(blocks, |(i, (mut block, mut step))| {
-            let n_clipped = block.clip(length, joining / layout.area(i).sqrt(), &mut step, gradient);
-            let (mut loads, mut last): (Vec<(usize, Load)>, _) = (Vec::new(), 0);
-            layout.for_each_run(i, block.heights.len(), |run, place| {
-                let (square, pressure) = (squares.at(place), &block.pressure[run.clone()]);
-                let added: f64 = step.added[run].iter().copied().map(f64::from).sum();
-                let load = Load { clipped: pressure.iter().sum(), added: added / gradient.unit };
-                // A run lies in the same square as the one before or in the next. Each row of a block begins in the
-                // first square again.
-                let is_this = |&i: &usize| loads.get(i).is_some_and(|(other, _)| *other == square);
-                let known = [last, last + 1, 0].into_iter().find(is_this).or_else(|| (0..loads.len()).find(is_this));
-                last = known.unwrap_or_else(|| {
-                    loads.push((square, Load::default()));
-                    loads.len() - 1
-                });
-                loads[last].1 = loads[last].1.plus(load, 1.0);
-            });
-            (n_clipped, loads)
+        let of_blocks = parallel::map(blocks, |(i, (block, mut step))| {
+            let joining = joining / layout.area(i).sqrt();
+            block.without_heights(|mut values| {
+                let n_clipped = values.clip(length, joining, &mut step, gradient);
+                (n_clipped, loads_of_block((i, layout), &squares, &values, (&step, gradient)))
+            })
         });
         self.add_loads(of_blocks)
     }
@@ -168,14 +163,16 @@ impl Descent<'_> {
     /// Writes the changes of pressures that restore the loads of squares by scaling. Returns the whole load.
     fn share(&mut self, shares: &Shares, unit: f64) -> f64 {
         let (len, layout) = (self.layout.len(), &self.layout);
-        let blocks = self.pressure.chunks_mut(len).zip(self.directions.added().chunks(len)).enumerate();
-        let sums = write_blocks(&mut *self.operators.corrections, blocks, |(i, (pressure, added)), written| {
-            let mut sum = 0.0;
-            layout.for_each_run(i, pressure.len(), |run, place| {
-                let (pressure, added, written) = (&mut pressure[run.clone()], &added[run.clone()], &mut written[run]);
-                sum += rows::share(pressure, shares.at(place), unit, added, written);
-            });
-            [sum]
+        let blocks = self.pressure.blocks(len).zip(self.directions.added().chunks(len)).enumerate();
+        let sums = write_blocks(&mut *self.operators.corrections, blocks, |(i, (block, added)), written| {
+            block.change(|pressure| {
+                let mut sum = 0.0;
+                layout.for_each_run(i, pressure.len(), |run, place| {
+                    let (changed, written) = (&mut pressure[run.clone()], &mut written[run.clone()]);
+                    sum += rows::share(changed, shares.at(place), unit, &added[run], written);
+                });
+                [sum]
+            })
         });
         let [load] = self.layout.total(sums);
         load
@@ -185,17 +182,18 @@ impl Descent<'_> {
     ///
     /// Only pressures between the bounds change, unless they cannot take the load.
     fn share_within_bounds(&mut self, shares: &Shares, unit: f64) {
-        let before = self.pressure.clone();
+        let before = self.pressure.all().into_owned();
         let (len, layout, bounds) = (self.layout.len(), &self.layout, self.problem.bounds);
         let changes = shares.changes(&self.rooms());
-        parallel::for_each(self.pressure.chunks_mut(len).enumerate(), |(i, block)| {
+        parallel::for_each(self.pressure.all_mut().chunks_mut(len).enumerate(), |(i, block)| {
             layout.for_each_run(i, block.len(), |run, place| {
                 let factor = changes.at(place).clamp(STEPS[0], STEPS[1]);
                 block[run].iter_mut().for_each(|p| *p = bounds.along(*p, factor));
             });
         });
         self.project_to_load();
-        let blocks = self.pressure.chunks(len).zip(before.chunks(len)).zip(self.directions.added().chunks(len));
+        let pressure = self.pressure.all();
+        let blocks = pressure.chunks(len).zip(before.chunks(len)).zip(self.directions.added().chunks(len));
         write_blocks(&mut *self.operators.corrections, blocks, |((pressure, before), added), written| {
             for (((p, before), added), written) in pressure.iter().zip(before).zip(added).zip(written) {
                 *written = ((p - before) * unit) as f32 + added;
@@ -207,7 +205,7 @@ impl Descent<'_> {
     fn rooms(&self) -> Vec<f64> {
         let (len, squares, layout) = (self.layout.len(), self.squares(), &self.layout);
         let bounds = self.problem.bounds;
-        let of_blocks = parallel::map(self.pressure.chunks(len).enumerate(), |(i, block)| {
+        let of_blocks = parallel::map(self.pressure.all().chunks(len).enumerate(), |(i, block)| {
             let mut rooms: Vec<(usize, f64)> = Vec::new();
             layout.for_each_run(i, block.len(), |run, place| {
                 let room: f64 = block[run].iter().map(|&p| bounds.direction(p)).sum();
@@ -230,4 +228,29 @@ impl Descent<'_> {
     fn squares(&self) -> Squares {
         Squares::new(self.layout.sides())
     }
+}
+
+/// The load of each square in block `i` after a clipped step.
+fn loads_of_block(
+    (i, layout): (usize, &BlockLayout),
+    squares: &Squares,
+    values: &ElementValues<'_>,
+    (step, gradient): (&ClippedStep<'_>, &Gradient),
+) -> Vec<(usize, Load)> {
+    let (mut loads, mut last): (Vec<(usize, Load)>, _) = (Vec::new(), 0);
+    layout.for_each_run(i, values.pressure.len(), |run, place| {
+        let (square, pressure) = (squares.at(place), &values.pressure[run.clone()]);
+        let added: f64 = step.added[run].iter().copied().map(f64::from).sum();
+        let load = Load { clipped: pressure.iter().sum(), added: added / gradient.unit };
+        // A run lies in the same square as the one before or in the next. Each row of a block begins in the
+        // first square again.
+        let is_this = |&i: &usize| loads.get(i).is_some_and(|(other, _)| *other == square);
+        let known = [last, last + 1, 0].into_iter().find(is_this).or_else(|| (0..loads.len()).find(is_this));
+        last = known.unwrap_or_else(|| {
+            loads.push((square, Load::default()));
+            loads.len() - 1
+        });
+        loads[last].1 = loads[last].1.plus(load, 1.0);
+    });
+    loads
 }

@@ -3,10 +3,11 @@
 //! The projection chooses the next active elements.
 
 use crate::descent::directions::Slope;
-use crate::descent::rows::{ElementValues, Gradient};
+use crate::descent::rows::Gradient;
 use crate::descent::state::Descent;
 use crate::descent::stop::{Stopped, unless_stopped};
 use crate::descent::sums::GapSums;
+use crate::descent::values::ElementVectors;
 use rc_core::{Boundary, Observer};
 
 use crate::parallel;
@@ -70,11 +71,11 @@ impl Descent<'_> {
         // The choice before clipping is kept only if residuals are extended.
         let is_chosen = std::mem::replace(&mut self.is_chosen, self.operators.corrections.extends());
         let directions = &mut self.directions;
-        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        let elements = ElementVectors { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let residuals = directions.active.chunks_mut(len).zip(directions.preconditioned.chunks_mut(len));
         let blocks = elements.blocks(len).zip(directions.direction.chunks(len).zip(residuals));
         let sums = parallel::map(blocks, |(block, (direction, (active, residual)))| {
-            block.first_residual(&gradient, direction, (active, is_chosen), residual)
+            block.without_heights(|values| values.first_residual(&gradient, direction, (active, is_chosen), residual))
         });
         let [n, direction] = self.layout.total(sums);
         self.operators.corrections.set_active(&self.directions.active);
@@ -114,10 +115,10 @@ impl Descent<'_> {
     fn take_step(&mut self, length: f64) {
         let _running = Step::Residuals.begin();
         let (len, gradient) = (self.layout.len(), self.gradient());
-        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        let elements = ElementVectors { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         let (steps, residuals) = self.directions.steps_and_residuals(len);
         parallel::for_each(elements.blocks(len).zip(steps.zip(residuals)), |(block, (step, residual))| {
-            block.next_residual(length, &step, &gradient, residual);
+            block.without_heights(|values| values.next_residual(length, &step, &gradient, residual));
         });
     }
 

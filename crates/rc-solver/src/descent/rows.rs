@@ -7,7 +7,7 @@
 
 use crate::descent::sums::GapSums;
 
-/// Heights, pressure and gap of the elements of a block, or of all elements.
+/// Heights, pressure and gap of the elements of a block.
 pub(crate) struct ElementValues<'a> {
     pub(crate) heights: &'a [f64],
     pub(crate) pressure: &'a mut [f64],
@@ -15,12 +15,6 @@ pub(crate) struct ElementValues<'a> {
 }
 
 impl ElementValues<'_> {
-    /// Divides into blocks of `len` elements.
-    pub(crate) fn blocks(self, len: usize) -> impl Iterator<Item = Self> {
-        let pressure_and_gap = self.pressure.chunks_mut(len).zip(self.gap.chunks_mut(len));
-        self.heights.chunks(len).zip(pressure_and_gap).map(|(heights, (pressure, gap))| Self { heights, pressure, gap })
-    }
-
     /// Writes `g = L p - h + c` from a fresh `displacement = L p`, where c is `offset`.
     pub(crate) fn fresh_gap(self, displacement: &[f64], offset: f64, mut sums: GapSums) -> GapSums {
         for (((&v, &h), &mut p), g) in displacement.iter().zip(self.heights).zip(self.pressure).zip(self.gap) {

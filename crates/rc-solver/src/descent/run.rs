@@ -2,7 +2,6 @@
 
 use rc_core::{Event, Observer};
 
-use crate::descent::descending_round::has_risen;
 use crate::descent::load::has_drifted;
 use crate::descent::observed::ObservedMesh;
 use crate::descent::outcome::Outcome;
@@ -114,7 +113,7 @@ impl Descent<'_> {
                 self.admit();
                 return self.stopped(goal, sums);
             };
-            history.has_strayed |= has_risen(&sums, &next);
+            history.has_strayed |= self.has_risen(&sums, &next);
             sums = next;
         }
     }
@@ -172,7 +171,8 @@ impl Descent<'_> {
     /// Scales the pressure to the prescribed load or penetration. The gap follows the scaling to rounding, since v is
     /// linear in p.
     pub(crate) fn refresh(&mut self) -> GapSums {
-        if has_drifted(self.problem.bounds, self.n_cell(), &self.layout, &self.pressure) {
+        let bounds = self.problem.bounds;
+        if bounds.is_limited() && has_drifted(bounds, self.n_cell(), &self.layout, &self.pressure.all()) {
             self.project_to_load();
         }
         let sums = self.fresh_gap();

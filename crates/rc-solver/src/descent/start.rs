@@ -1,6 +1,6 @@
 //! The first pressure and gap of a descent.
 
-use crate::descent::load::{is_plastic, mean_pressure};
+use crate::descent::load::is_plastic;
 use crate::descent::state::Descent;
 use crate::descent::sums::GapSums;
 use crate::parallel;
@@ -54,10 +54,9 @@ impl DepthSearch {
 impl Descent<'_> {
     /// Computes the first pressure and gap.
     pub(crate) fn start(&mut self) -> GapSums {
-        let n_cell = self.n_cell();
-        let present = mean_pressure(n_cell, &self.layout, &self.pressure);
+        let present = self.pressure.sum(&self.layout) / self.n_cell();
         let usable = self.has_start && present > 0.0;
-        if usable && is_plastic(&self.pressure, self.problem.bounds) {
+        if usable && self.problem.bounds.is_limited() && is_plastic(&self.pressure.all(), self.problem.bounds) {
             return if self.has_gap { self.rescale(1.0) } else { self.plastic_start() };
         }
         let sums = self.elastic_start(present, usable);
@@ -66,7 +65,8 @@ impl Descent<'_> {
 
     /// Projects a start that has reached the hardness, without a gap.
     pub(crate) fn plastic_start(&mut self) -> GapSums {
-        for (g, h) in self.gap.iter_mut().zip(self.heights) {
+        let heights = self.heights.part(0..self.heights.len());
+        for (g, h) in self.gap.all_mut().iter_mut().zip(&*heights) {
             *g = -h;
         }
         self.project_to_load();
@@ -106,9 +106,11 @@ impl Descent<'_> {
     fn overlap(&mut self, floor: f64) -> GapSums {
         let len = self.layout.len();
         parallel::for_each(self.elements().blocks(len), |block| {
-            for (p, h) in block.pressure.iter_mut().zip(block.heights) {
-                *p = (h - floor).max(0.0);
-            }
+            block.with_heights(|values| {
+                for (p, h) in values.pressure.iter_mut().zip(values.heights) {
+                    *p = (h - floor).max(0.0);
+                }
+            });
         });
         self.fresh_gap_under(f64::INFINITY)
     }
@@ -120,7 +122,7 @@ impl Descent<'_> {
     fn overlap_of_load(&mut self, wanted: f64) -> GapSums {
         let n_cell = self.n_cell();
         // A coarse level may not be as high as the finest.
-        let highest = self.layout.maximum(self.heights, f64::NEG_INFINITY);
+        let highest = self.layout.maximum(&self.heights.part(0..self.heights.len()), f64::NEG_INFINITY);
         let range = self.problem.depth_range();
         let mut search = DepthSearch::new(range);
         for attempt in 1..=MAX_OVERLAPS {
@@ -141,7 +143,7 @@ impl Descent<'_> {
                 break;
             }
         }
-        self.pressure.fill(wanted);
+        self.pressure.update(|p| *p = wanted);
         self.project_to_load();
         self.refresh()
     }

@@ -1,5 +1,7 @@
 //! Pressure and gap on one level, and the functions that improve them.
 
+use std::borrow::Cow;
+
 use rc_core::{Boundary, Field, Grid};
 
 use crate::descent::directions::ConjugateDirections;
@@ -8,9 +10,8 @@ use crate::descent::info::{GridSolution, LevelInfo, LevelValues, Status};
 use crate::descent::layout::BlockLayout;
 use crate::descent::operators::LevelOperators;
 use crate::descent::outcome::Outcome;
-use crate::descent::rows::ElementValues;
 use crate::descent::sums::GapSums;
-use crate::parallel;
+use crate::descent::values::{ElementHeights, ElementVectors, Values};
 use crate::problem::checked::Problem;
 
 /// The start of a descent.
@@ -20,7 +21,7 @@ pub(crate) enum Start {
     /// This pressure, up to a factor.
     Pressure(Vec<f64>),
     /// This pressure, whose gap is known.
-    Known { pressure: Vec<f64>, gap: Vec<f64> },
+    Known { pressure: Values, gap: Values },
 }
 
 /// What the displacement in the gap follows.
@@ -46,9 +47,9 @@ pub(crate) struct Descent<'a> {
     pub(crate) problem: &'a Problem,
     pub(crate) layout: BlockLayout,
     pub(crate) operators: LevelOperators<'a>,
-    pub(crate) heights: &'a [f64],
-    pub(crate) pressure: Vec<f64>,
-    pub(crate) gap: Vec<f64>,
+    pub(crate) heights: ElementHeights<'a>,
+    pub(crate) pressure: Values,
+    pub(crate) gap: Values,
     pub(crate) directions: ConjugateDirections,
     /// ⟨t, L t⟩ of the last step. Infinite if the next direction need not be conjugate to another.
     pub(crate) curvature: f64,
@@ -76,18 +77,19 @@ impl<'a> Descent<'a> {
     ///
     /// `heights` has one value for each element.
     pub(crate) fn new(
-        heights: &'a [f64],
+        heights: impl Into<ElementHeights<'a>>,
         grid: Grid,
         operators: LevelOperators<'a>,
         problem: &'a Problem,
         start: Start,
     ) -> Self {
+        let heights = heights.into();
         let directions = ConjugateDirections::new(heights.len());
         Self::with_directions(heights, grid, operators, problem, (start, directions))
     }
 
     fn with_directions(
-        heights: &'a [f64],
+        heights: ElementHeights<'a>,
         grid: Grid,
         operators: LevelOperators<'a>,
         problem: &'a Problem,
@@ -98,8 +100,8 @@ impl<'a> Descent<'a> {
         debug_assert_eq!(layout.len(), operators.fresh.layout().len());
         let (has_start, has_gap) = (!matches!(start, Start::Nothing), matches!(start, Start::Known { .. }));
         let (pressure, gap) = match start {
-            Start::Nothing => (vec![0.0; n], vec![0.0; n]),
-            Start::Pressure(pressure) => (pressure, vec![0.0; n]),
+            Start::Nothing => (Values::Double(vec![0.0; n]), Values::Double(vec![0.0; n])),
+            Start::Pressure(pressure) => (Values::Double(pressure), Values::Double(vec![0.0; n])),
             Start::Known { pressure, gap } => (pressure, gap),
         };
         Self {
@@ -126,13 +128,13 @@ impl<'a> Descent<'a> {
 
     /// A descent that takes no step, for [`Descent::certify_start`]. It has no memory for directions.
     pub(crate) fn without_steps(
-        heights: &'a [f64],
+        heights: impl Into<ElementHeights<'a>>,
         grid: Grid,
         operators: LevelOperators<'a>,
         problem: &'a Problem,
         start: Start,
     ) -> Self {
-        Self::with_directions(heights, grid, operators, problem, (start, ConjugateDirections::new(0)))
+        Self::with_directions(heights.into(), grid, operators, problem, (start, ConjugateDirections::new(0)))
     }
 
     pub(crate) fn grid(&self) -> Grid {
@@ -148,12 +150,12 @@ impl<'a> Descent<'a> {
         self.info
     }
 
-    pub(crate) fn pressure(&self) -> &[f64] {
-        &self.pressure
+    pub(crate) fn pressure(&self) -> Cow<'_, [f64]> {
+        self.pressure.all()
     }
 
-    pub(crate) fn gap(&self) -> &[f64] {
-        &self.gap
+    pub(crate) fn gap(&self) -> Cow<'_, [f64]> {
+        self.gap.all()
     }
 
     /// The gap of elements in contact.
@@ -169,8 +171,8 @@ impl<'a> Descent<'a> {
     }
 
     /// Heights, pressure and gap.
-    pub(crate) fn elements(&mut self) -> ElementValues<'_> {
-        ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap }
+    pub(crate) fn elements(&mut self) -> ElementVectors<'_> {
+        ElementVectors { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap }
     }
 
     /// Computes the gap from a fresh application of L, in double precision.
@@ -181,7 +183,7 @@ impl<'a> Descent<'a> {
     /// [`Descent::fresh_gap`], with sums for another hardness.
     pub(crate) fn fresh_gap_under(&mut self, hardness: f64) -> GapSums {
         self.info.operator_applications += 1;
-        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
+        let elements = ElementVectors { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
         // Fresh gaps are rare. An operator keeps no memory for vectors while the other one works.
         self.operators.corrections.release();
         let empty = GapSums::empty(self.pressed, hardness);
@@ -233,13 +235,13 @@ impl<'a> Descent<'a> {
     }
 
     /// The pressure.
-    pub(crate) fn into_pressure(self) -> Vec<f64> {
+    pub(crate) fn into_pressure(self) -> Values {
         self.pressure
     }
 
     /// The pressure, and the gap with its pressure-weighted mean at zero.
     pub(crate) fn into_vectors(mut self, mean_gap: f64) -> (Vec<f64>, Vec<f64>) {
-        parallel::update(&mut self.gap, |g| *g -= mean_gap);
-        (self.pressure, self.gap)
+        self.gap.update(|g| *g -= mean_gap);
+        (self.pressure.into_all(), self.gap.into_all())
     }
 }

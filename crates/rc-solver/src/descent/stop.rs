@@ -6,7 +6,6 @@
 use rc_core::Observer;
 
 use crate::descent::state::Descent;
-use crate::parallel;
 
 /// The observer wants to stop, and the round has ended early.
 ///
@@ -28,7 +27,7 @@ impl Descent<'_> {
             return;
         }
         let bounds = self.problem.bounds;
-        parallel::update(&mut self.pressure, |p| *p = p.clamp(0.0, bounds.hardness));
+        self.pressure.update(|p| *p = p.clamp(0.0, bounds.hardness));
         // With a hardness, the fresh gap restores the load.
         if !bounds.is_limited() {
             self.project_to_load();

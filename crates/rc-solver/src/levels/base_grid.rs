@@ -29,6 +29,11 @@ const SMALLEST_WIDTH: usize = 16;
 /// keep 0.41.
 const SLOPE_KEPT: f64 = 0.8;
 
+/// Maximum spacing of a map's base grid, in elements of the map: three levels above it.
+///
+/// The error of the operators grows with each level, and iterations with it: `docs/constants.md`.
+const MOST_SPACING: usize = 8;
+
 /// Checks or chooses the sides of the base grid, in elements.
 ///
 /// If the elements along x are `wanted`, those along y are in proportion.
@@ -76,7 +81,8 @@ pub(crate) fn base_sides(
     let smallest = 2 * (2 * waves.unwrap_or(0) + 1).max(TILE);
     let error = AdaptiveError::Grid { nx, ny, smallest };
     let mut all = std::iter::successors(Some(n), |n| Some(n / 2)).take_while(|&n| n > 1 && long >= SMALLEST_BASE);
-    let uneven = all.find_map(|n| uneven_sides(source.grid(), n));
+    let uneven =
+        all.find_map(|n| GREATEST_FACTORS.into_iter().find_map(|factor| uneven_sides(source.grid(), n, factor)));
     // Below uneven grids a surface is sampled on its whole grid, like a map.
     let samples = if is_surface { BYTES_PER_SAMPLE * source.grid().len() as f64 } else { 0.0 };
     let is_larger = |even: &[usize; 2]| uneven.is_some_and(|other| base_bytes(*even) > base_bytes(other) + samples);
@@ -93,20 +99,21 @@ const MOST_ADDED: f64 = 0.15;
 /// The second number holds if there is no other grid.
 const OBLONG: [f64; 2] = [0.01, 0.02];
 
-/// Maximum prime factor of the base grid's sides.
+/// Maximum prime factors of the base grid's sides, each for grids without sides of smaller factors.
 ///
-/// Fourier transforms of such lengths are fast.
-const GREATEST_FACTOR: usize = 7;
+/// Fourier transforms of such lengths are fast. A finer base grid would cost four times as much.
+const GREATEST_FACTORS: [usize; 3] = [7, 13, 31];
 
 /// The best base grid for a finest grid that is about `n` times as large.
 ///
 /// A side of the base grid, times `n`, has at least as many elements as the finest grid, and not many more. Elements
-/// are nearly squares. Of such grids, it has the smallest number of elements. `None` if there is no such grid.
-fn uneven_sides(finest: Grid, n: usize) -> Option<[usize; 2]> {
+/// are nearly squares. Of such grids, it has the smallest number of elements. `None` if there is no such grid whose
+/// sides have prime factors up to `greatest`.
+fn uneven_sides(finest: Grid, n: usize, greatest: usize) -> Option<[usize; 2]> {
     let candidates = |side: usize| -> Vec<usize> {
         let least = side.div_ceil(n).next_multiple_of(TILE).max(SMALLEST_WIDTH);
         let most = ((1.0 + MOST_ADDED) * side as f64 / n as f64) as usize;
-        (least..=most).step_by(TILE).filter(|&side| has_small_factors(side, GREATEST_FACTOR)).collect()
+        (least..=most).step_by(TILE).filter(|&side| has_small_factors(side, greatest)).collect()
     };
     let [along_x, along_y] = sides_of(finest).map(candidates);
     let oblong = |[nx, ny]: [usize; 2]| {
@@ -131,13 +138,13 @@ fn wanted_sides(base: usize, waves: usize, [nx, ny]: [usize; 2]) -> Option<[usiz
 
 /// Number of elements along the longer side that keeps the slopes of a map.
 ///
-/// The spacing is a power of two.
+/// The spacing is a power of two, up to [`MOST_SPACING`].
 fn smooth_side(map: &Field, boundary: Boundary) -> usize {
     let sides = sides_of(map.grid());
     let finest = mean_square_slope(map, 1, boundary);
     let mut spacing = 1;
     let is_kept = |spacing| mean_square_slope(map, spacing, boundary) >= SLOPE_KEPT * finest;
-    while 4 * spacing <= sides[0].min(sides[1]) && is_kept(2 * spacing) {
+    while spacing < MOST_SPACING && 4 * spacing <= sides[0].min(sides[1]) && is_kept(2 * spacing) {
         spacing *= 2;
     }
     sides[0].max(sides[1]) / spacing
@@ -252,6 +259,7 @@ mod tests {
             ([860, 634], [216, 160]),
             ([1001, 1001], [256, 256]),
             ([1000, 1000], [256, 256]),
+            ([1499, 400], [392, 104]),
             // An eighth of the elements along both sides would be far from it along x.
             ([130, 520], [72, 288]),
         ] {
@@ -260,7 +268,8 @@ mod tests {
         let base = |map: &Field, boundary| base_sides(&HeightSource::Map(map), None, boundary).ok();
         assert_eq!(base(&grooves(true), Boundary::Periodic), Some([256; 2]));
         assert_eq!(base(&grooves(false), Boundary::Periodic), Some([256; 2]));
-        for (map, expected) in [(wave(8.0), 64), (wave(30.0), 128), (wave(100.0), 256), (noise, 256), (with_pit, 256)] {
+        for (map, expected) in [(wave(8.0), 128), (wave(30.0), 128), (wave(100.0), 256), (noise, 256), (with_pit, 256)]
+        {
             assert_eq!(base(&map, Boundary::Periodic), Some([expected; 2]));
         }
         // A slope that does not meet itself across the border is as steep as its wave and a jump.
@@ -268,7 +277,7 @@ mod tests {
         for (i, h) in tilted.values_mut().iter_mut().enumerate() {
             *h += 0.1 * (i % 1024) as f64;
         }
-        assert_eq!(base(&tilted, Boundary::Free), Some([64; 2]));
+        assert_eq!(base(&tilted, Boundary::Free), Some([128; 2]));
         assert_eq!(base(&tilted, Boundary::Periodic), Some([256; 2]));
     }
 }

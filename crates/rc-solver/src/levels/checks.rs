@@ -25,7 +25,7 @@ const OPERATOR_ERROR_PER_ENERGY: f64 = 0.5;
 const DEEPEST_SIDE: usize = 1 << 17;
 
 /// The operator of descents, which follows from the tolerance alone.
-pub(super) fn first_split(params: &AdaptiveParams) -> Result<GapSplit, AdaptiveError> {
+pub(crate) fn first_split(params: &AdaptiveParams) -> Result<GapSplit, AdaptiveError> {
     let of_bound = match params.solve.bound {
         ErrorBound::Relative(value) => OPERATOR_ERROR_PER_TOLERANCE * value,
         ErrorBound::Energy(_) => OPERATOR_ERROR_PER_ENERGY * params.solve.bound.aim(),

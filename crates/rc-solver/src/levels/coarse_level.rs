@@ -74,8 +74,8 @@ pub(crate) fn solve_coarse_level(
         fresh: Box::new(levels.quick_operator(hierarchy, &response, &start)),
     };
     let MeshStart { elements, pressure } = start;
-    let heights = element_heights(&levels.data.heights, &elements, None, levels.problem.out_of_reach(grid.len()));
-    let descent = Descent::new(&heights, grid, operators, &levels.problem, Start::Pressure(pressure));
+    let heights = element_heights(&levels.data.heights, &elements, levels.problem.out_of_reach(grid.len()));
+    let descent = Descent::new(&*heights, grid, operators, &levels.problem, Start::Pressure(pressure));
     let mut descent = TileDescent::new(descent, storage);
     let outcome = descent.run(goal, &DescentObserver { observer, mesh: &elements });
     let (info, work) = (descent.info(), descent.work());

@@ -19,7 +19,9 @@ const PROPORTIONALITY: f64 = 2.1;
 const TILES_PER_AREA: f64 = 1.9;
 
 /// Bytes for each cell of a tile where contact is possible, at the peak.
-const BYTES_PER_CELL: f64 = 80.0;
+///
+/// The second number is for meshes so large that descents spare memory.
+const BYTES_PER_CELL: [f64; 2] = [55.0, 28.0];
 
 /// Bytes that a sliding surface adds for each of these cells, at the peak.
 ///
@@ -99,8 +101,14 @@ impl Estimate {
         (FIXED_TIME + TIME_OF_BASE * n_base) / n_finest + TIME_OF_AREA * area_fraction
     }
 
-    /// `period` has the elements of the base grid that operators work on.
-    pub(crate) fn new(heights: &Heights<'_>, border_level: usize, problem: &Problem, period: [usize; 2]) -> Self {
+    /// `period` has the elements of the base grid that operators work on. `spares` says whether a number of cells is so
+    /// large that descents spare memory.
+    pub(crate) fn new(
+        heights: &Heights<'_>,
+        border_level: usize,
+        problem: &Problem,
+        (period, spares): ([usize; 2], impl Fn(usize) -> bool),
+    ) -> Self {
         let (base, boundary) = (heights.base(), problem.support.boundary);
         let of_load = |pressure: f64| PROPORTIONALITY * pressure / rms_slope(base, boundary);
         let area = match problem.bounds.control {
@@ -125,7 +133,8 @@ impl Estimate {
         let n_finest = heights.ladder().finest().len() as f64;
         let n_cells = tile_fraction * n_finest * (0.25 * GROWTH_PER_BORDER_LEVEL).powi(border_level as i32);
         let with_borders = |more: f64| n_cells * (1.0 + more * border_level as f64);
-        let cell_bytes = BYTES_PER_CELL * with_borders(MORE_BYTES_PER_BORDER_LEVEL);
+        let cell_bytes =
+            BYTES_PER_CELL[usize::from(spares(n_cells as usize))] * with_borders(MORE_BYTES_PER_BORDER_LEVEL);
         Self {
             area_fraction,
             tile_fraction,

@@ -72,7 +72,7 @@ impl<'a> GridLevels<'a> {
             2 * grid.nx() == finer.nx() && (2 * grid.ny() == finer.ny() || finer.ny() == 1)
         };
         (above == self.n_above || is_half()).then(|| LevelValues {
-            rms_pressure: rms(descent.pressure(), PIECE),
+            rms_pressure: rms(&descent.pressure(), PIECE),
             penetration: self.problem.h_max + outcome.approach,
             friction: None,
         })

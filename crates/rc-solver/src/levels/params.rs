@@ -12,6 +12,8 @@ pub(crate) struct AdaptiveParams {
     /// It holds on pressures of contacts ([`SplitParams`] has the measurements). A tolerance below a third of it lowers
     /// it. A pressure so rough that the tolerance would not hold lowers it too.
     pub operator_error: f64,
+    /// Number of elements above which descents and evaluations spare memory, if a loose tolerance allows it.
+    pub spare_above: usize,
     /// Number of times that elements at edges of contacts are halved beyond the finest grid.
     ///
     /// Elements inside contacts stay as they are.
@@ -22,4 +24,9 @@ pub(crate) struct AdaptiveParams {
     ///
     /// The memory of the base grid is checked before heights are sampled.
     pub memory_limit: Option<u64>,
+}
+
+impl AdaptiveParams {
+    /// [`AdaptiveParams::spare_above`] of every solve. Digits of smaller meshes are those of double precision.
+    pub(crate) const SPARE_ABOVE: usize = 100_000_000;
 }

@@ -73,7 +73,7 @@ impl<'a> SlidingLevels<'a> {
         let heights = self.grids.heights(above).values();
         let mut descent = Descent::new(heights, grid, operators, self.grids.problem(), Start::Nothing);
         descent.run(Goal { certify: None, ..goal }, &DescentObserver { observer, mesh: &grid });
-        Start::Pressure(descent.into_pressure())
+        Start::Pressure(descent.into_pressure().into_all())
     }
 }
 

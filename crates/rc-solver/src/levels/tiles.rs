@@ -23,6 +23,7 @@ use crate::problem::kernel::OwnedKernel;
 use crate::problem::method::Method;
 use crate::problem::steps::Step;
 use crate::problem::support::Support;
+use crate::problem::tolerance::ErrorBound;
 use crate::tiles::base::Base;
 use crate::tiles::data::TileData;
 use crate::tiles::exclusion::{SmoothDisplacement, possible_contact};
@@ -61,6 +62,11 @@ pub(crate) struct TileLevels<'a> {
 /// Where they have more, the base grid is finer. Overlaps are relative to a length that is about a quarter of the
 /// largest displacement, and half of the bound is for the rest of the operator's error.
 const UNRESOLVED_PART: f64 = 0.05;
+
+/// Smallest energy tolerance at which a descent may be in single precision.
+///
+/// Rounding moves gaps by 1e-7 of the displacements around them, and errors of single precision in corrections by more.
+const LOOSE: f64 = 1e-3;
 
 /// Checks the `split` of the `kernel`, and samples the heights. Tables are made when they are needed.
 ///
@@ -147,7 +153,8 @@ impl<'a> TileLevels<'a> {
     /// The expected cost of the solve, from only the surface and the load.
     pub(crate) fn estimate(&self) -> Estimate {
         let TileData { heights, sampled_bytes, .. } = &*self.data;
-        let estimate = Estimate::new(heights, self.params.border_level, &self.problem, self.base().period());
+        let period_and_spares = (self.base().period(), |n| self.spares(n));
+        let estimate = Estimate::new(heights, self.params.border_level, &self.problem, period_and_spares);
         let of_sliding = if self.data.kernels.is_sliding() { MORE_BYTES_OF_SLIDING * estimate.cells } else { 0.0 };
         Estimate { adaptive_bytes: estimate.adaptive_bytes + sampled_bytes + of_sliding, ..estimate }
     }
@@ -155,6 +162,17 @@ impl<'a> TileLevels<'a> {
     /// The same levels with another split for certificates.
     pub(super) fn with(&self, certified: GapSplit) -> Self {
         Self { certified, ..self.clone() }
+    }
+
+    /// Whether a descent or an evaluation on `n` elements spares memory.
+    ///
+    /// Pressure and gap of a descent are then in single precision, and heights and gaps are not kept.
+    pub(super) fn spares(&self, n: usize) -> bool {
+        let (bounds, bound) = (self.problem.bounds, self.params.solve.bound);
+        let is_loose = matches!(bound, ErrorBound::Energy(value) if value >= LOOSE);
+        let is_usual = bounds.mean().is_some() && !bounds.is_limited() && self.problem.support.is_none();
+        let is_simple = self.params.border_level == 0 && self.ranks().size() == 1 && !self.data.kernels.is_sliding();
+        n > self.params.spare_above && is_loose && is_usual && is_simple
     }
 
     /// The grid that solutions are on.
@@ -308,6 +326,7 @@ mod tests {
         let params = AdaptiveParams {
             solve: IterationParams::relative(1e-6),
             operator_error: 1e-6,
+            spare_above: usize::MAX,
             border_level: 0,
             base_side: None,
             memory_limit: Some(100_000_000),

@@ -138,8 +138,8 @@ impl<'a> SlidingDescent<'a> {
                 return Ok(Some(next));
             }
             let descent = &mut self.descent;
-            descent.pressure.copy_from_slice(&before.0);
-            descent.gap.copy_from_slice(&before.1);
+            descent.pressure.clone_from(&before.0);
+            descent.gap.clone_from(&before.1);
             (descent.zero_gap, descent.pressed) = (zero_gap, pressed);
             descent.directions.active.copy_from_slice(&elements.active);
         }

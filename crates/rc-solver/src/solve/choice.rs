@@ -8,7 +8,8 @@ use rc_core::{Boundary, Field, Grid, HeightField, HeightSource, Kernel as _};
 use rc_kernel::Love;
 
 use crate::grid::response::padded_side;
-use crate::levels::base_grid::BASE_ELEMENTS_PER_WAVE;
+use crate::levels::base_grid::{BASE_ELEMENTS_PER_WAVE, base_sides};
+use crate::levels::checks::first_split;
 use crate::levels::estimate::Estimate;
 use crate::levels::split::check_split;
 use crate::levels::tiles::TileLevels;
@@ -144,9 +145,12 @@ impl<'a> Choice<'a, '_> {
     fn large_contact(&self) -> Option<f64> {
         let (heights, kernel) = (&self.problem.heights, self.problem.kernel.get());
         let (grid, Control::MeanPressure(pressure)) = (heights.grid(), self.problem.control) else { return None };
-        // The preparation also examines the split of any other kernel.
-        let is_usual = kernel.name() == Love.name() && !self.features.contains(&Feature::Ranks);
-        if !is_usual || self.shared.has_tiles() {
+        // The preparation also examines the split of any other kernel. Where the adaptive method fails, that is the reason.
+        let is_usual = kernel.name() == Love.name() && kernel.half_space().is_none();
+        let params = self.params.adaptive(self.bound);
+        let fails =
+            first_split(&params).is_err() || base_sides(heights, params.base_side, self.problem.boundary()).is_err();
+        if !is_usual || fails || self.features.contains(&Feature::Ranks) || self.shared.has_tiles() {
             return None;
         }
         let sample = if let Some(map) = heights.map() {

@@ -82,6 +82,7 @@ impl SolveParams {
     /// The parameters of the adaptive method.
     pub(crate) fn adaptive(&self, bound: ErrorBound) -> AdaptiveParams {
         AdaptiveParams {
+            spare_above: AdaptiveParams::SPARE_ABOVE,
             solve: self.iteration(bound),
             operator_error: self.operator_error,
             border_level: self.border_level,

@@ -7,6 +7,7 @@ use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, Elements, TILE};
 
 use crate::descent::layout::BlockLayout;
 use crate::descent::observed::ObservedMesh;
+use crate::descent::values::Values;
 use crate::tiles::mesh::Mesh;
 
 impl Mesh {
@@ -34,7 +35,7 @@ impl Mesh {
 
 impl ObservedMesh for Mesh {
     /// Shows the pressure to the observer, if this rank has the whole pressure.
-    fn show_pressure(&self, pressure: &[f64], observer: &dyn Observer) {
+    fn show_pressure(&self, pressure: &Values, observer: &dyn Observer) {
         if self.n_own() < self.len() {
             return;
         }
@@ -42,7 +43,8 @@ impl ObservedMesh for Mesh {
         // Elements are squares.
         let grid = Grid::in_cell(nx, ny, ny as f64 / nx as f64).expect("a level of a checked grid");
         let rows = |take: &mut dyn FnMut(&[f64])| {
-            let (tiles, pressure) = self.on_coarsest(pressure);
+            let all = pressure.all();
+            let (tiles, pressure) = self.on_coarsest(&all);
             let Ok(()) = tiles.rows(&pressure, |_, rows| {
                 take(rows);
                 Ok::<_, Infallible>(())

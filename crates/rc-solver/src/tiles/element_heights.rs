@@ -11,39 +11,25 @@ use crate::tiles::mesh::Mesh;
 
 /// Heights of the elements that this rank has.
 ///
-/// Heights of elements of `known` are taken from there. Values that fill up a vector, and those beyond a level, get the
-/// height `elsewhere`, which must be out of reach ([`Problem::out_of_reach`]).
+/// Values that fill up a vector, and those beyond a level, get the height `elsewhere`, which must be out of reach
+/// ([`Problem::out_of_reach`]).
 ///
 /// [`Problem::out_of_reach`]: crate::problem::checked::Problem::out_of_reach
-pub(crate) fn element_heights(
-    heights: &Heights<'_>,
-    mesh: &Mesh,
-    known: Option<(&Mesh, &[f64])>,
-    elsewhere: f64,
-) -> Vec<f64> {
+pub(crate) fn element_heights(heights: &Heights<'_>, mesh: &Mesh, elsewhere: f64) -> Vec<f64> {
     let _running = Step::Heights.begin();
     let (layout, mut result) = (mesh.layout(), vec![elsewhere; mesh.n_own()]);
     let blocks = layout.ranges(result.len()).zip(layout.chunks_mut(&mut result));
-    parallel::for_each(blocks, |(block, cells)| block_heights(heights, (mesh, block), known, cells));
+    parallel::for_each(blocks, |(block, cells)| block_heights(heights, (mesh, block), cells));
     result
 }
 
 /// Writes the heights of the elements of one block of vectors, as [`element_heights`] does.
 ///
 /// Other values of the block stay.
-pub(crate) fn block_heights(
-    heights: &Heights<'_>,
-    (mesh, block): (&Mesh, Range<usize>),
-    known: Option<(&Mesh, &[f64])>,
-    cells: &mut [f64],
-) {
+pub(crate) fn block_heights(heights: &Heights<'_>, (mesh, block): (&Mesh, Range<usize>), cells: &mut [f64]) {
     let (coarser, _, places) = mesh.tiles_of(block);
     let tiles = &mesh.levels()[coarser];
     for (cells, &place) in cells.as_chunks_mut::<CELLS>().0.iter_mut().zip(places) {
-        if let Some(known) = known.and_then(|(known, values)| known.tile(coarser, place, values)) {
-            *cells = *known;
-            continue;
-        }
         heights.tile(tiles.sides(), place.map(|i| i as usize), cells);
         if coarser > 0 {
             to_means(heights, tiles, place, coarser, cells);
@@ -94,7 +80,7 @@ mod tests {
         let tiles = [(32, [16, 16]), (16, [4, 4]), (8, [0, 0])];
         let elements =
             Elements::new(tiles.map(|(per_side, place)| TileSet::new([8 * per_side; 2], vec![place])).to_vec());
-        let values = element_heights(&heights, &Mesh::from(elements.clone()), None, 0.0);
+        let values = element_heights(&heights, &Mesh::from(elements.clone()), 0.0);
         for (coarser, (_, [column, row])) in tiles.into_iter().enumerate() {
             let (n, start) = (1 << coarser, elements.cells(coarser).start);
             for cell in 0..CELLS {

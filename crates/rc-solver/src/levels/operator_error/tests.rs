@@ -178,6 +178,7 @@ impl<'a> Scene<'a> {
         let params = AdaptiveParams {
             solve: IterationParams { bound: self.bound, max_iterations: 500 },
             operator_error: 1e-6,
+            spare_above: usize::MAX,
             border_level: 0,
             base_side: self.base,
             memory_limit: None,
