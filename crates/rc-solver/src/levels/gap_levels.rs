@@ -10,6 +10,7 @@ use crate::descent::info::{LevelInfo, LevelValues};
 use crate::descent::outcome::{OF_OBSERVABLES, Outcome};
 use crate::descent::run::DescentObserver;
 use crate::descent::state::{Descent, Start};
+use crate::descent::values::Values;
 use crate::grid::operators::no_operators;
 use crate::grid::response::GridResponse;
 use crate::levels::gap_cycle::GapGrid;
@@ -104,7 +105,8 @@ fn climb<'a>(
     let response = GridResponse::of(grids.grid(0), kernel);
     let mut on_grids = GapGrid::nested(grids.grid(0), kernel, &response, problem.unit());
     let mut history = History { levels: history.levels.clone(), coarser: None };
-    let mut gap = prolong_gap([base.pressure(), base.gap()], base.contact_gap(), [base.grid(), grids.grid(LEVELS - 1)]);
+    let mut gap =
+        prolong_gap([&base.pressure(), &base.gap()], base.contact_gap(), [base.grid(), grids.grid(LEVELS - 1)]);
     for above in (1..LEVELS).rev() {
         let grid = grids.grid(above);
         nested.announce(grid, above);
@@ -127,7 +129,7 @@ fn climb<'a>(
     let (is_cycle, goal) = (contact < NEARLY_FULL, goal_of(nested));
     let improved = gap_side::improve(gap, heights, (&mut on_grids, is_cycle), (problem, mean));
     let solution = gap_side::solve(improved, heights, (&mut on_grids, &response), (problem, mean), goal);
-    let start = Start::Known { pressure: solution.pressure, gap: solution.gap };
+    let start = Start::Known { pressure: Values::Double(solution.pressure), gap: Values::Double(solution.gap) };
     let mut descent = Descent::without_steps(heights.values(), grid, no_operators(grid), problem, start);
     descent.info = level_info(grid, solution.applications + if is_cycle { 2 } else { 1 });
     history.levels.push(descent.info());

@@ -23,7 +23,6 @@ use std::ops::Range;
 use rc_core::{Field, Grid};
 use rc_fft::{BLOCK_ROWS, Convolution};
 
-use crate::descent::rows::ElementValues;
 use crate::descent::sums::GapSums;
 use crate::grid::passes::{layout, read_rows, write_rows};
 use crate::grid::response::GridResponse;
@@ -257,11 +256,11 @@ impl GapSide<'_> {
     fn make_admissible(&mut self, quick: &Convolution<f32>, pieces: &Pieces) -> GapSums {
         let (len, nx, unit) = (self.len(), self.grid.nx(), self.problem.unit());
         let (floor, shift) = (self.problem.offset(), -self.problem.h_mean - pieces.mean_gap);
-        let elements = ElementValues { heights: self.heights, pressure: &mut self.pressure, gap: &mut self.gap };
-        let tasks = Tasks::new(elements.blocks(len));
+        let blocks = self.pressure.chunks_mut(len).zip(self.gap.chunks_mut(len)).zip(self.heights.chunks(len));
+        let tasks = Tasks::new(blocks);
         let empty = GapSums::empty(f64::INFINITY, f64::INFINITY);
         read_rows(quick, &|i, rows| {
-            tasks.run(i, |ElementValues { heights, pressure, gap }: ElementValues<'_>| {
+            tasks.run(i, |((pressure, gap), heights): ((&mut [f64], &mut [f64]), &[f64])| {
                 let mut sums = empty;
                 for (at, (((p, g), h), row)) in pressure.iter_mut().zip(gap).zip(heights).zip(rows).enumerate() {
                     *p = pieces.admissible((i, at % nx), *p, *g);
