@@ -89,7 +89,7 @@ pub struct SolveInfo {
     /// The part of [`Certificate::energy`] that comes from the iteration.
     ///
     /// It is computed without the bound on the error of the operator. Errors of area and rms pressure were measured to
-    /// be less than its square.
+    /// be less than its square. In heavy contact, which is solved for its gap, it is therefore larger than the bound.
     pub iteration_error: f64,
     /// Mean pressure σ0, in E*.
     pub mean_pressure: f64,

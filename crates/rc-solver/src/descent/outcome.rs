@@ -22,6 +22,11 @@ pub(crate) struct Outcome {
     pub(crate) contact_gap: f64,
 }
 
+/// Largest relative error of area and rms pressure, in units of such a bound on the error of the pressure.
+///
+/// Measured up to 0.28 for areas and 0.04 for rms pressures (32 scenes, 80 % to 99 % contact, H = 0.4 and 0.8).
+pub(crate) const OF_OBSERVABLES: f64 = 0.3;
+
 impl Outcome {
     /// The outcome from sums over all elements that may be in contact.
     ///
@@ -47,6 +52,20 @@ impl Outcome {
             elastic_energy,
             contact_gap: sums.zero_gap(problem.bounds),
         }
+    }
+
+    /// The outcome with another bound on ⟨p - p*, L (p - p*)⟩, if it is smaller than G.
+    ///
+    /// It is close to the error itself, while errors of observables are of the order of G.
+    pub(crate) fn with_energy_bound(mut self, problem: &Problem, bound: f64) -> Self {
+        let energy = self.elastic_energy - problem.uniform_energy(self.mean_pressure);
+        let error = (bound / energy).sqrt();
+        // NaN is no bound.
+        if error < self.certificate.energy {
+            self.certificate.energy = error;
+            self.iteration_error = self.iteration_error.min((OF_OBSERVABLES * error).sqrt());
+        }
+        self
     }
 
     /// U/σ0, the ratio of elastic energy to mean pressure. U has no energy of a uniform pressure.

@@ -125,6 +125,23 @@ impl Descent<'_> {
         self.unfinished(goal, &sums)
     }
 
+    /// The outcome of a start that has the gap and the load that it should, without a step.
+    ///
+    /// `bound` is a bound on ⟨p - p*, L (p - p*)⟩ with the exact pressure p*, which is known by other means. The start,
+    /// of which the `sums` are, has converged if its energy error is at most `tolerance`.
+    pub(crate) fn check_start(
+        &mut self,
+        sums: GapSums,
+        bound: f64,
+        tolerance: f64,
+        watch: &DescentObserver<'_>,
+    ) -> Outcome {
+        let sums = self.settle(sums);
+        let outcome = self.outcome(&sums, false).with_energy_bound(self.problem, bound);
+        self.tell(watch, [outcome.certificate.energy, tolerance].map(|error| error * error), &sums);
+        Outcome { converged: outcome.certificate.energy <= tolerance, ..outcome }
+    }
+
     /// The outcome when the observer wants to stop.
     ///
     /// `sums` are those of the last finished round. The gap is computed afresh only for a certificate, and only if it

@@ -50,25 +50,30 @@ pub(crate) fn operator_of(grid: Grid, response: GridResponse) -> Box<dyn BlockOp
 /// The operator L of `kernel` on `grid` for a certificate only, without corrections.
 pub(crate) fn certifying_operators(grid: Grid, kernel: &dyn Kernel) -> LevelOperators<'static> {
     let fresh = operator_of(grid, GridResponse::of(grid, kernel));
-    LevelOperators { corrections: Box::new(NoCorrections(fresh.layout())), fresh }
+    LevelOperators { corrections: Box::new(NoOperator(fresh.layout())), fresh }
 }
 
-/// No corrections, for a solve that was stopped: it takes no step, so only the layout is asked for.
-struct NoCorrections(BlockLayout);
+/// No operators on `grid`, for a pressure whose gap is known.
+pub(crate) fn no_operators(grid: Grid) -> LevelOperators<'static> {
+    LevelOperators { corrections: Box::new(NoOperator(layout(grid))), fresh: Box::new(NoOperator(layout(grid))) }
+}
 
-impl BlockOperator<f32> for NoCorrections {
+/// No operator, where no step is taken: only the layout is asked for.
+struct NoOperator(BlockLayout);
+
+impl<T> BlockOperator<T> for NoOperator {
     fn layout(&self) -> BlockLayout {
         self.0.clone()
     }
 
-    fn write(&mut self, _write: &(dyn Fn(usize, &mut [f32]) + Sync)) {}
+    fn write(&mut self, _write: &(dyn Fn(usize, &mut [T]) + Sync)) {}
 
     fn apply(&mut self) {}
 
-    fn read(&self, _read: &(dyn Fn(usize, &[f32]) + Sync)) {}
+    fn read(&self, _read: &(dyn Fn(usize, &[T]) + Sync)) {}
 }
 
-impl PreconditionedOperator for NoCorrections {
+impl PreconditionedOperator for NoOperator {
     fn set_active(&mut self, _active: &[bool]) {}
 
     fn precondition(&mut self, _active: &[bool], _values: &mut [f32]) {}

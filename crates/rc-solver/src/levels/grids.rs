@@ -85,8 +85,12 @@ impl<'a> GridLevels<'a> {
 
     /// Solves all grids, coarsest first.
     pub(crate) fn solve_all(&self, nested: &Nested<'_>) -> ((Descent<'a>, Outcome), History) {
-        let begun = Begun { above: self.n_levels() - 1, start: Start::Nothing, history: History::default() };
-        nested.solve(self, nested.climb(self, begun, self.n_above))
+        nested.solve(self, nested.climb(self, self.first(), self.n_above))
+    }
+
+    /// The coarsest grid, at which a solve begins.
+    pub(crate) fn first(&self) -> Begun<Start> {
+        Begun { above: self.n_levels() - 1, start: Start::Nothing, history: History::default() }
     }
 }
 

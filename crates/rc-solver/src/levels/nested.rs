@@ -70,15 +70,26 @@ impl Nested<'_> {
     pub(crate) fn climb<L: Levels>(&self, levels: &L, mut begun: Begun<L::Start>, last: usize) -> Begun<L::Start> {
         while begun.above > last {
             let above = begun.above;
-            let (solved, mut history) = self.solve(levels, begun);
-            let skips = L::SKIPS && self.observer.should_stop();
-            if skips {
-                history.coarser = None;
-            }
-            let next = if skips { last } else { above - 1 };
-            begun = Begun { above: next, start: levels.start(solved, next), history };
-            levels.keep(&begun);
+            let solved = self.solve(levels, begun);
+            begun = self.next(levels, (above, last), solved);
         }
+        begun
+    }
+
+    /// The level after the solved one with `above` levels above it, which is the `last` one if the solve is stopped.
+    pub(crate) fn next<L: Levels>(
+        &self,
+        levels: &L,
+        (above, last): (usize, usize),
+        (solved, mut history): (L::Solved, History),
+    ) -> Begun<L::Start> {
+        let skips = L::SKIPS && self.observer.should_stop();
+        if skips {
+            history.coarser = None;
+        }
+        let next = if skips { last } else { above - 1 };
+        let begun = Begun { above: next, start: levels.start(solved, next), history };
+        levels.keep(&begun);
         begun
     }
 

@@ -6,6 +6,7 @@ use rc_core::{Boundary, Field, Kernel, Observer};
 
 use crate::descent::info::GridSolution;
 use crate::grid::full_contact;
+use crate::levels::gap_levels;
 use crate::levels::grids::{GridLevels, SMALLEST_SIDE, coarser_heights};
 use crate::levels::nested::Nested;
 use crate::problem::bounds::Bounds;
@@ -43,6 +44,35 @@ pub(crate) fn solve_uniform(
     params: &IterationParams,
     observer: &dyn Observer,
 ) -> Result<GridSolution, ProblemError> {
+    solve(heights, kernel, bounds.into(), params, observer, Ways::Rounds).map(|(solution, _)| solution)
+}
+
+/// [`solve_uniform`], which may solve the finest grids for the gap of nearly full contact. The result says whether.
+pub(crate) fn solve_uniform_or_gap(
+    heights: &Field,
+    kernel: &dyn Kernel,
+    bounds: impl Into<Bounds>,
+    params: &IterationParams,
+    observer: &dyn Observer,
+) -> Result<(GridSolution, bool), ProblemError> {
+    solve(heights, kernel, bounds.into(), params, observer, Ways::RoundsOrGap)
+}
+
+/// How grids may be solved.
+#[derive(Clone, Copy, PartialEq)]
+enum Ways {
+    Rounds,
+    RoundsOrGap,
+}
+
+fn solve(
+    heights: &Field,
+    kernel: &dyn Kernel,
+    bounds: Bounds,
+    params: &IterationParams,
+    observer: &dyn Observer,
+    ways: Ways,
+) -> Result<(GridSolution, bool), ProblemError> {
     let problem = Problem::check_on(Support::of(kernel, heights.grid()), heights, bounds, params)?;
     let boundary = problem.support.boundary;
     let coarser = coarser_heights(heights, boundary, SMALLEST_SIDE);
@@ -50,10 +80,13 @@ pub(crate) fn solve_uniform(
         && let Some(mean_pressure) = full_contact::mean_pressure(&problem)
         && let Some(solution) = full_contact::solve((heights, &coarser), kernel, mean_pressure, &problem, params.bound)
     {
-        return Ok(solution);
+        return Ok((solution, false));
     }
     let grids = GridLevels::new(kernel, &problem, (heights, &coarser), 0);
     let nested = Nested { problem: &problem, params: *params, n_levels: grids.n_levels(), observer };
-    let ((descent, outcome), history) = grids.solve_all(&nested);
-    Ok(descent.into_solution(&outcome, history.levels, history.coarser))
+    let (((descent, outcome), history), is_from_gap) = match ways {
+        Ways::Rounds => (grids.solve_all(&nested), false),
+        Ways::RoundsOrGap => gap_levels::solve(&grids, kernel, &nested),
+    };
+    Ok((descent.into_solution(&outcome, history.levels, history.coarser), is_from_gap))
 }

@@ -31,6 +31,8 @@ pub enum MethodReason {
         /// Estimated contact area, in percent of the nominal one.
         percent: f64,
     },
+    /// Most of the surface is in contact, and the uniform grid was solved for its gap.
+    HeavyContact,
     /// Contact is so scattered that the uniform grid is the cheaper one.
     ///
     /// The adaptive method finds this on its base grid, a coarse grid that it stores in full.
@@ -85,6 +87,7 @@ impl fmt::Display for MethodReason {
                     round(percent)
                 )
             }
+            Self::HeavyContact => write!(f, "uniform, from the gaps: most of the surface is in contact"),
             Self::ScatteredContact { percent } => {
                 write!(f, "uniform: it is cheaper because {} % of the cell would be near contact", round(percent))
             }

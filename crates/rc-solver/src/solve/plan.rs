@@ -10,7 +10,7 @@ use crate::grid::solved::{GridSolved, Response};
 use crate::levels::adaptive::Unsuitable;
 use crate::levels::sliding::solve_sliding;
 use crate::levels::tiles::TileLevels;
-use crate::levels::uniform::solve_uniform;
+use crate::levels::uniform::{solve_uniform, solve_uniform_or_gap};
 use crate::paper::error::GaussSeidelError;
 use crate::paper::half_space::HalfSpace;
 use crate::paper::params::GaussSeidelParams;
@@ -117,6 +117,7 @@ impl<'a> Plan<'a> {
             shared.forget_tiles();
         }
         let (heights, kernel) = (shared.heights(&problem.heights), problem.kernel.get());
+        let mut reason = reason;
         let (method, solution) = if matches!(chosen, ChosenMethod::GaussSeidel) {
             let params = (bound, &params.gauss_seidel);
             (Method::GaussSeidel, by_gauss_seidel(&problem, heights, params, observer)?)
@@ -124,8 +125,15 @@ impl<'a> Plan<'a> {
             let limits = params.iteration(bound);
             let solution = if kernel.sliding_velocity().is_some() {
                 solve_sliding(heights, kernel, problem.bounds(), &limits, observer)?
-            } else {
+            } else if matches!(reason, MethodReason::AskedFor(_)) {
                 solve_uniform(heights, kernel, problem.bounds(), &limits, observer)?
+            } else {
+                let (solution, is_from_gap) =
+                    solve_uniform_or_gap(heights, kernel, problem.bounds(), &limits, observer)?;
+                if is_from_gap {
+                    reason = MethodReason::HeavyContact;
+                }
+                solution
             };
             (Method::Uniform, solution)
         };

@@ -9,6 +9,7 @@ mod gradient;
 mod handover;
 mod hardness;
 mod hardness_of_solids;
+mod heavy_contact;
 mod history;
 mod observers;
 mod operators;

@@ -20,19 +20,27 @@ impl<T: Arithmetic> Taps<T> {
     ///
     /// Weights too small to matter are omitted.
     pub(crate) fn new(stencil: &Stencil, factor: f64, side: usize) -> Self {
-        let (radius, margin) = (stencil.radius() as i32, (side - TILE) as i32 / 2);
         let negligible = 1e-15 * stencil.weight(0, 0).abs();
+        Self::of_weights(stencil.radius(), side, |dx, dy| {
+            let weight = stencil.weight(dx, dy);
+            if weight.abs() > negligible { factor * weight } else { 0.0 }
+        })
+    }
+
+    /// Taps of the weights that are not zero at offsets up to `radius`, for patches of `side`.
+    pub(crate) fn of_weights(radius: usize, side: usize, weight: impl Fn(i32, i32) -> f64) -> Self {
+        let (reach, margin) = (radius as i32, (side - TILE) as i32 / 2);
         let mut taps = Vec::new();
-        for dy in -radius..=radius {
-            for dx in -radius..=radius {
-                let weight = stencil.weight(dx, dy);
-                if weight.abs() > negligible {
+        for dy in -reach..=reach {
+            for dx in -reach..=reach {
+                let weight = weight(dx, dy);
+                if weight != 0.0 {
                     let offset = (margin + dy) * side as i32 + margin + dx;
-                    taps.push((offset as usize, T::rounded(factor * weight)));
+                    taps.push((offset as usize, T::rounded(weight)));
                 }
             }
         }
-        Self { taps, radius: stencil.radius() }
+        Self { taps, radius }
     }
 
     /// Rows of the patch that are read.

@@ -1,0 +1,150 @@
+//! Heavy contact: the finest grids are solved for their gap.
+//!
+//! The grid below them is solved by rounds, as all coarser ones. It shows how much of the surface is in contact. If the
+//! cycles on a grid do not reach their goal, rounds go on from the grid below, as if nothing had been tried.
+
+use rc_core::{Boundary, Grid, Kernel};
+use rc_quadtree::TILE;
+
+use crate::descent::info::{LevelInfo, LevelValues};
+use crate::descent::outcome::{OF_OBSERVABLES, Outcome};
+use crate::descent::run::DescentObserver;
+use crate::descent::state::{Descent, Start};
+use crate::descent::values::Values;
+use crate::grid::operators::no_operators;
+use crate::grid::response::GridResponse;
+use crate::levels::gap_cycle::GapGrid;
+use crate::levels::gap_prolongation::prolong_gap;
+use crate::levels::gap_side;
+use crate::levels::grids::GridLevels;
+use crate::levels::nested::{History, Levels as _, Nested};
+use crate::parallel::{self, rms};
+use crate::problem::tolerance::Measure;
+
+/// Number of grids that are solved for the gap.
+const LEVELS: usize = 3;
+
+/// Part of the grid below in contact.
+const HEAVY: f64 = 0.9;
+
+/// Part of the grid below in contact from which steps near pools may do.
+const NEARLY_FULL: f64 = 0.95;
+
+/// Minimum number of elements along a side of the finest grid.
+const LEAST_SIDE: usize = 512;
+
+/// Ratio of the errors of observables to those of rounds.
+const AS_ROUNDS: f64 = 2.0;
+
+/// The smallest goal of the energy error that gaps in single precision reach.
+const LEAST_GOAL: f64 = 1e-5;
+
+type Solved<'a> = ((Descent<'a>, Outcome), History);
+
+/// Solves all grids, coarsest first. The result says whether the finest ones were solved for the gap.
+pub(super) fn solve<'a>(grids: &GridLevels<'a>, kernel: &dyn Kernel, nested: &Nested<'_>) -> (Solved<'a>, bool) {
+    if !is_plain(grids, kernel, nested) {
+        return (grids.solve_all(nested), false);
+    }
+    let begun = nested.climb(grids, grids.first(), LEVELS);
+    let (base, history) = nested.solve(grids, begun);
+    let contact = contact_fraction(&base.0);
+    if !nested.observer.should_stop()
+        && contact >= HEAVY
+        && let Some(solved) = climb(grids, kernel, nested, (&base.0, &history), contact)
+    {
+        return (solved, true);
+    }
+    let begun = nested.next(grids, (LEVELS, 0), (base, history));
+    (nested.solve(grids, nested.climb(grids, begun, 0)), false)
+}
+
+/// The energy error whose effect on observables is about that of rounds.
+fn goal_of(nested: &Nested<'_>) -> f64 {
+    AS_ROUNDS * nested.params.bound.aim() / OF_OBSERVABLES
+}
+
+/// Whether the problem and its grids are such that the gap can be solved for.
+fn is_plain(grids: &GridLevels<'_>, kernel: &dyn Kernel, nested: &Nested<'_>) -> bool {
+    let problem = grids.problem();
+    let has_grids = || {
+        let (finest, base) = (grids.grid(0), grids.grid(LEVELS));
+        let is_doubled = |n: usize, of: usize| n == of << LEVELS && n >= LEAST_SIDE && of.is_multiple_of(TILE);
+        let spacing = finest.spacing();
+        is_doubled(finest.nx(), base.nx())
+            && is_doubled(finest.ny(), base.ny())
+            && (spacing.x / spacing.y - 1.0).abs() < 1e-9
+    };
+    problem.measure == Measure::Energy
+        && goal_of(nested) >= LEAST_GOAL
+        && problem.support.is_none()
+        && problem.support.boundary == Boundary::Periodic
+        && !problem.bounds.is_limited()
+        && problem.bounds.mean().is_some()
+        && kernel.sliding_velocity().is_none()
+        && grids.n_levels() > LEVELS
+        && has_grids()
+}
+
+/// The part of the elements in contact.
+fn contact_fraction(base: &Descent<'_>) -> f64 {
+    let n = base.pressure().iter().filter(|p| **p > 0.0).count();
+    n as f64 / base.grid().len() as f64
+}
+
+/// Solves the finest grids for their gap. `None` if the last one does not reach its goal.
+fn climb<'a>(
+    grids: &GridLevels<'a>,
+    kernel: &dyn Kernel,
+    nested: &Nested<'_>,
+    (base, history): (&Descent<'a>, &History),
+    contact: f64,
+) -> Option<Solved<'a>> {
+    let problem = grids.problem();
+    let mean = problem.bounds.mean()?;
+    let response = GridResponse::of(grids.grid(0), kernel);
+    let mut on_grids = GapGrid::nested(grids.grid(0), kernel, &response, problem.unit());
+    let mut history = History { levels: history.levels.clone(), coarser: None };
+    let mut gap =
+        prolong_gap([&base.pressure(), &base.gap()], base.contact_gap(), [base.grid(), grids.grid(LEVELS - 1)]);
+    for above in (1..LEVELS).rev() {
+        let grid = grids.grid(above);
+        nested.announce(grid, above);
+        let [better, mut pressure] =
+            gap_side::improve(gap, grids.heights(above), (&mut on_grids[above..], true), (problem, mean));
+        gap_side::allow(&mut pressure, &better, (grid.nx(), on_grids[above].closing()));
+        history.levels.push(level_info(grid, 2));
+        history.coarser = Some(LevelValues {
+            rms_pressure: rms(&pressure, grid.nx()),
+            penetration: problem.h_max - problem.h_mean - mean_of(&better, grid.nx()),
+            friction: None,
+        });
+        if nested.observer.should_stop() {
+            return None;
+        }
+        gap = prolong_gap([&pressure, &better], 0.0, [grid, grids.grid(above - 1)]);
+    }
+    let (heights, grid) = (grids.heights(0), grids.grid(0));
+    nested.announce(grid, 0);
+    let (is_cycle, goal) = (contact < NEARLY_FULL, goal_of(nested));
+    let improved = gap_side::improve(gap, heights, (&mut on_grids, is_cycle), (problem, mean));
+    let solution = gap_side::solve(improved, heights, (&mut on_grids, &response), (problem, mean), goal);
+    let start = Start::Known { pressure: Values::Double(solution.pressure), gap: Values::Double(solution.gap) };
+    let mut descent = Descent::without_steps(heights.values(), grid, no_operators(grid), problem, start);
+    descent.info = level_info(grid, solution.applications + if is_cycle { 2 } else { 1 });
+    history.levels.push(descent.info());
+    let watch = DescentObserver { observer: nested.observer, mesh: &grid };
+    let outcome = descent.check_start(solution.sums, solution.error, goal, &watch);
+    (outcome.converged && !nested.observer.should_stop()).then_some(((descent, outcome), history))
+}
+
+/// The work on a grid that is solved for its gap.
+fn level_info(grid: Grid, operator_applications: usize) -> LevelInfo {
+    LevelInfo { grid, iterations: 0, operator_applications, preconditioner_applications: 0 }
+}
+
+/// The mean of values, in pieces of `len`.
+fn mean_of(values: &[f64], len: usize) -> f64 {
+    let sums = parallel::map(values.chunks(len), |values| values.iter().sum::<f64>());
+    sums.into_iter().sum::<f64>() / values.len() as f64
+}
