@@ -24,11 +24,15 @@ use crate::problem::tolerance::Measure;
 /// Number of grids that are solved for the gap.
 const LEVELS: usize = 3;
 
-/// Part of the grid below in contact.
-const HEAVY: f64 = 0.9;
-
 /// Part of the grid below in contact from which steps near pools may do.
 const NEARLY_FULL: f64 = 0.95;
+
+/// The same on large grids, from which a cycle is worth its time there, and the number of elements along their sides.
+///
+/// On 2048² and less, ten scenes of 90 to 95 % contact took 0.8 to 1.26 times as long by rounds, and two on 4096² took
+/// 1.23 and 1.71 times.
+const HEAVY: f64 = 0.9;
+const LARGE_SIDE: usize = 4096;
 
 /// Minimum number of elements along a side of the finest grid.
 const LEAST_SIDE: usize = 512;
@@ -49,8 +53,9 @@ pub(super) fn solve<'a>(grids: &GridLevels<'a>, kernel: &dyn Kernel, nested: &Ne
     let begun = nested.climb(grids, grids.first(), LEVELS);
     let (base, history) = nested.solve(grids, begun);
     let contact = contact_fraction(&base.0);
+    let heavy = if grids.grid(0).nx() < LARGE_SIDE { NEARLY_FULL } else { HEAVY };
     if !nested.observer.should_stop()
-        && contact >= HEAVY
+        && contact >= heavy
         && let Some(solved) = climb(grids, kernel, nested, (&base.0, &history), contact)
     {
         return (solved, true);
