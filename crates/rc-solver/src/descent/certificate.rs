@@ -33,6 +33,9 @@ pub struct Certificate {
     ///
     /// Pits, the offset and the range of the heights do not enter the bound. Errors of contact area, rms pressure, mean
     /// gap and penetration were measured. They are 0.05 to 0.6 of the bound's square where the operator is exact.
+    ///
+    /// Of a heavy contact that was solved for its gap, p* is compared with an admissible pressure in another way
+    /// (`docs/uniform-grid.md`), and the errors are up to 0.3 of the bound itself, which is as much smaller.
     pub energy: f64,
     /// Relative error of the load.
     ///

@@ -133,8 +133,9 @@ impl Estimate {
         let n_finest = heights.ladder().finest().len() as f64;
         let n_cells = tile_fraction * n_finest * (0.25 * GROWTH_PER_BORDER_LEVEL).powi(border_level as i32);
         let with_borders = |more: f64| n_cells * (1.0 + more * border_level as f64);
-        let cell_bytes =
-            BYTES_PER_CELL[usize::from(spares(n_cells as usize))] * with_borders(MORE_BYTES_PER_BORDER_LEVEL);
+        // Half of these cells are near contact, which is what descents count, and heights are kept up to twice the number.
+        let spares = spares((0.5 * n_cells) as usize);
+        let cell_bytes = BYTES_PER_CELL[usize::from(spares)] * with_borders(MORE_BYTES_PER_BORDER_LEVEL);
         Self {
             area_fraction,
             tile_fraction,

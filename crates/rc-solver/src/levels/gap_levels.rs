@@ -4,6 +4,7 @@
 //! cycles on a grid do not reach their goal, rounds go on from the grid below, as if nothing had been tried.
 
 use rc_core::{Boundary, Grid, Kernel};
+use rc_kernel::{Love, Spectral};
 use rc_quadtree::TILE;
 
 use crate::descent::info::{LevelInfo, LevelValues};
@@ -53,7 +54,8 @@ pub(super) fn solve<'a>(grids: &GridLevels<'a>, kernel: &dyn Kernel, nested: &Ne
     let begun = nested.climb(grids, grids.first(), LEVELS);
     let (base, history) = nested.solve(grids, begun);
     let contact = contact_fraction(&base.0);
-    let heavy = if grids.grid(0).nx() < LARGE_SIDE { NEARLY_FULL } else { HEAVY };
+    let grid = grids.grid(0);
+    let heavy = if grid.nx().min(grid.ny()) < LARGE_SIDE { NEARLY_FULL } else { HEAVY };
     if !nested.observer.should_stop()
         && contact >= heavy
         && let Some(solved) = climb(grids, kernel, nested, (&base.0, &history), contact)
@@ -80,7 +82,10 @@ fn is_plain(grids: &GridLevels<'_>, kernel: &dyn Kernel, nested: &Nested<'_>) ->
             && is_doubled(finest.ny(), base.ny())
             && (spacing.x / spacing.y - 1.0).abs() < 1e-9
     };
-    problem.measure == Measure::Energy
+    // Short-ranged kernels are those of L ∝ 1/q on any lattice.
+    let is_half_space = [Love.name(), Spectral.name()].contains(&kernel.name()) && kernel.half_space().is_none();
+    is_half_space
+        && problem.measure == Measure::Energy
         && goal_of(nested) >= LEAST_GOAL
         && problem.support.is_none()
         && problem.support.boundary == Boundary::Periodic
@@ -133,14 +138,16 @@ fn climb<'a>(
     nested.announce(grid, 0);
     let (is_cycle, goal) = (contact < NEARLY_FULL, goal_of(nested));
     let improved = gap_side::improve(gap, heights, (&mut on_grids, is_cycle), (problem, mean));
-    let solution = gap_side::solve(improved, heights, (&mut on_grids, &response), (problem, mean), goal);
+    let should_stop = || nested.observer.should_stop();
+    let solution =
+        gap_side::solve(improved, heights, (&mut on_grids, &response), (problem, mean), (goal, &should_stop));
     let start = Start::Known { pressure: Values::Double(solution.pressure), gap: Values::Double(solution.gap) };
     let mut descent = Descent::without_steps(heights.values(), grid, no_operators(grid), problem, start);
     descent.info = level_info(grid, solution.applications + if is_cycle { 2 } else { 1 });
     history.levels.push(descent.info());
     let watch = DescentObserver { observer: nested.observer, mesh: &grid };
     let outcome = descent.check_start(solution.sums, solution.error, goal, &watch);
-    (outcome.converged && !nested.observer.should_stop()).then_some(((descent, outcome), history))
+    (outcome.converged || should_stop()).then_some(((descent, outcome), history))
 }
 
 /// The work on a grid that is solved for its gap.

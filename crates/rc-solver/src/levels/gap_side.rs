@@ -91,7 +91,7 @@ pub(super) fn solve(
     heights: &Field,
     (grids, response): (&mut [GapGrid], &GridResponse),
     (problem, mean): (&Problem, f64),
-    goal: f64,
+    (goal, should_stop): (f64, &dyn Fn() -> bool),
 ) -> GapSolution {
     let mut side = GapSide { grid: heights.grid(), heights: heights.values(), problem, mean, pressure, gap };
     let (mut last, mut n_cycles) = (f64::INFINITY, 0);
@@ -100,7 +100,7 @@ pub(super) fn solve(
         let error = side.displace(grids[0].convolution(), response, &pieces);
         let relative = (error / pieces.energy).sqrt();
         let has_fallen = relative < LEAST_FALL * last;
-        if relative <= goal || n_cycles == MAX_CYCLES || !has_fallen {
+        if relative <= goal || n_cycles == MAX_CYCLES || !has_fallen || should_stop() {
             let (sums, applications) = (side.make_admissible(grids[0].convolution(), &pieces), 2 + 3 * n_cycles);
             let GapSide { pressure, gap, .. } = side;
             return GapSolution { pressure, gap, sums, error, applications };
