@@ -141,7 +141,7 @@ def test_refused_input_has_the_sentence_of_the_command_line(command, heights, tm
         {"cell": 0.01, "e_star": 1e9},
         {"cell": 0.01, "e_star": 1e9, "pressure": 1e6, "threads": 0},
         {"cell": 0.01, "e_star": 1e9, "pressure": 1e6, "waves": 8},
-        {"cell": 0.01, "e_star": 1e9, "pressure": 1e6, "memory_limit": "200kB"},
+        {"cell": 0.01, "e_star": 1e9, "pressure": 1e6, "memory_limit": "100kB"},
         {"cell": 0.01, "e_star": 1e9, "pressure": 1e6, "method": "adaptive", "kernel": "spectral"},
     ]
     for keys in cases:
