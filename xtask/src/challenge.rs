@@ -25,7 +25,7 @@ pub(crate) struct Args {
     flip: bool,
     /// Solves one load on this many elements per side instead of the curve.
     ///
-    /// 65536, as in the published reference, takes minutes and 7 GB.
+    /// 65536, as in the published reference, takes minutes and 6 GB.
     #[arg(long, value_name = "SIDE", num_args = 0..=1, default_missing_value = "65536", conflicts_with = "quick")]
     large: Option<usize>,
     /// Archives this run: tables in `data/runs/challenge/`, and the picture in `docs/images/`.
