@@ -30,18 +30,25 @@ pub(super) struct GapGrid {
     inverse: Factors<f32>,
     near: NearKernel,
     convolution: Convolution<f32>,
-    /// Gaps are in this unit in single precision.
+    /// Gaps are in this unit.
     unit: f64,
 }
 
+/// The shape that a gap is added to, and the mean pressure.
+pub(super) struct Shape<'a> {
+    pub(super) heights: &'a [f64],
+    pub(super) mean_height: f64,
+    pub(super) mean_pressure: f64,
+}
+
 impl GapGrid {
-    fn new(grid: Grid, kernel: &dyn Kernel, response: &GridResponse, unit: f64) -> Self {
-        let inverse = response.factors.storage_inverse(grid);
+    fn new(grid: Grid, kernel: &dyn Kernel, response: &Factors<f64>, unit: f64) -> Self {
+        let inverse = response.storage_inverse(grid);
         Self { grid, inverse, near: NearKernel::new(kernel, grid, unit), convolution: Convolution::new(grid), unit }
     }
 
     /// The `finest` grid and those below it, finest first.
-    pub(super) fn nested(finest: Grid, kernel: &dyn Kernel, response: &GridResponse, unit: f64) -> Vec<Self> {
+    pub(super) fn nested(finest: Grid, kernel: &dyn Kernel, response: &Factors<f64>, unit: f64) -> Vec<Self> {
         let mut grids = vec![Self::new(finest, kernel, response, unit)];
         let is_even = |n: usize| n.is_multiple_of(2 * TILE) && n >= 2 * SMALLEST_SIDE;
         let half = |grid: Grid| grid.with_elements(grid.nx() / 2, grid.ny() / 2).ok();
@@ -50,7 +57,7 @@ impl GapGrid {
             && is_even(next.ny())
             && let Some(grid) = half(next)
         {
-            grids.push(Self::new(grid, kernel, &GridResponse::of(grid, kernel), unit));
+            grids.push(Self::new(grid, kernel, &GridResponse::of(grid, kernel).factors, unit));
             next = grid;
         }
         grids
@@ -61,8 +68,8 @@ impl GapGrid {
         BLOCK_ROWS * self.grid.nx()
     }
 
-    /// The pressure of an element alone that answers to its gap, in E*/λ.
-    pub(super) fn closing(&self) -> f64 {
+    /// The pressure of an element alone that answers to a gap of one unit, in E*.
+    pub(super) fn closing(&self) -> f32 {
         self.near.closing
     }
 
@@ -71,48 +78,59 @@ impl GapGrid {
         &mut self.convolution
     }
 
-    /// Computes the pressure σ0 + K (h + g). `shape` gives h + g of an element.
-    pub(super) fn pressure_under(&mut self, mean: f64, shape: impl Fn(usize) -> f64 + Sync, pressure: &mut [f64]) {
-        let (len, unit) = (self.len(), self.unit);
+    /// Computes the pressure σ0 + K (h + g). Returns what `note` makes of each block of rows: gap and pressure.
+    pub(super) fn pressure_under<R: Send>(
+        &mut self,
+        shape: &Shape<'_>,
+        gap: &[f32],
+        pressure: &mut [f32],
+        note: impl Fn(usize, [&[f32]; 2]) -> R + Sync,
+    ) -> Vec<R> {
+        let (len, unit) = (self.len(), self.unit as f32);
         write_rows(&mut self.convolution, &|i, rows| {
-            rows.iter_mut().enumerate().for_each(|(at, row)| *row = (shape(i * len + at) / unit) as f32);
+            let here = i * len..i * len + rows.len();
+            for ((row, h), g) in rows.iter_mut().zip(&shape.heights[here.clone()]).zip(&gap[here]) {
+                *row = ((h - shape.mean_height) / self.unit) as f32 + g;
+            }
         });
         self.inverse.apply(&mut self.convolution);
-        let tasks = Tasks::new(pressure.chunks_mut(len));
+        let (tasks, mean) = (Tasks::new(pressure.chunks_mut(len).zip(gap.chunks(len))), shape.mean_pressure as f32);
         read_rows(&self.convolution, &|i, rows| {
-            tasks.run(i, |pressure: &mut [f64]| {
-                pressure.iter_mut().zip(rows).for_each(|(p, row)| *p = mean + unit * f64::from(*row));
+            tasks.run(i, |(pressure, gap): (&mut [f32], &[f32])| {
+                pressure.iter_mut().zip(rows).for_each(|(p, row)| *p = mean + unit * row);
+                note(i, [gap, pressure])
             });
         });
+        tasks.into_results()
     }
 
     /// Changes the gap, and the pressure with it. `change` is called with an element and its gap and pressure.
-    fn change(&mut self, [gap, pressure]: [&mut [f64]; 2], change: impl Fn(usize, f64, f64) -> f64 + Sync) {
-        let (len, unit) = (self.len(), self.unit);
+    fn change(&mut self, [gap, pressure]: [&mut [f32]; 2], change: impl Fn(usize, f32, f32) -> f32 + Sync) {
+        let (len, unit) = (self.len(), self.unit as f32);
         {
             let (gap, pressure) = (&*gap, &*pressure);
             write_rows(&mut self.convolution, &|i, rows| {
                 let here = i * len..i * len + rows.len();
                 let elements = gap[here.clone()].iter().zip(&pressure[here.clone()]);
                 for (at, (row, (g, p))) in here.zip(rows.iter_mut().zip(elements)) {
-                    *row = (change(at, *g, *p) / unit) as f32;
+                    *row = change(at, *g, *p);
                 }
             });
         }
         self.inverse.apply(&mut self.convolution);
         let tasks = Tasks::new(gap.chunks_mut(len).zip(pressure.chunks_mut(len)));
         read_rows(&self.convolution, &|i, rows| {
-            tasks.run(i, |(gap, pressure): (&mut [f64], &mut [f64])| {
+            tasks.run(i, |(gap, pressure): (&mut [f32], &mut [f32])| {
                 for (at, ((g, p), row)) in gap.iter_mut().zip(pressure).zip(rows).enumerate() {
                     *g += change(i * len + at, *g, *p);
-                    *p += unit * f64::from(*row);
+                    *p += unit * row;
                 }
             });
         });
     }
 
     /// Takes steps near the pools.
-    pub(super) fn relax(&self, gap: &mut [f64], pressure: &mut [f64]) {
+    pub(super) fn relax(&self, gap: &mut [f32], pressure: &mut [f32]) {
         let (grid, len) = (self.grid, self.len());
         let blocks = pressure.chunks(len).zip(gap.chunks(len)).enumerate();
         let mut places =
@@ -120,9 +138,9 @@ impl GapGrid {
                 .concat();
         places.sort_unstable();
         places.dedup();
-        let mut pools = Pools::new(grid, places, [gap, pressure], self.unit);
+        let mut pools = Pools::new(grid, places, [gap, pressure]);
         pools.relax(&self.near);
-        pools.put(grid, [gap, pressure], self.unit);
+        pools.put(grid, [gap, pressure]);
     }
 }
 
@@ -130,7 +148,7 @@ impl GapGrid {
 ///
 /// `depth` is the number of finer grids in the cycle. From the third grid on, each is visited twice, which costs little:
 /// on coarse grids, many elements are only partly in pools, and one visit does not correct long waves well.
-pub(super) fn cycle(grids: &mut [GapGrid], depth: usize, gap: &mut [f64], pressure: &mut [f64]) {
+pub(super) fn cycle(grids: &mut [GapGrid], depth: usize, gap: &mut [f32], pressure: &mut [f32]) {
     let Some((here, coarser)) = grids.split_first_mut() else { return };
     let sides = [here.grid.nx(), here.grid.ny()];
     if coarser.is_empty() {
@@ -161,7 +179,7 @@ pub(super) fn cycle(grids: &mut [GapGrid], depth: usize, gap: &mut [f64], pressu
 /// Gap and pressure on a grid with half the elements.
 ///
 /// Where some of four elements are active, it is the pressure of these.
-fn restricted([nx, ny]: [usize; 2], gap: &[f64], pressure: &[f64]) -> [Vec<f64>; 2] {
+fn restricted([nx, ny]: [usize; 2], gap: &[f32], pressure: &[f32]) -> [Vec<f32>; 2] {
     let [mut gaps, mut pressures] = [(); 2].map(|()| parallel::zeros(nx / 2 * (ny / 2)));
     let rows = gaps.chunks_mut(nx / 2).zip(pressures.chunks_mut(nx / 2));
     let finer = gap.chunks(2 * nx).zip(pressure.chunks(2 * nx));
@@ -170,21 +188,21 @@ fn restricted([nx, ny]: [usize; 2], gap: &[f64], pressure: &[f64]) -> [Vec<f64>;
             let four = [2 * x, 2 * x + 1, nx + 2 * x, nx + 2 * x + 1];
             let is_active = four.map(|at| is_active(gap[at], pressure[at]));
             let is_any = is_active.contains(&true);
-            *g = 0.25 * four.iter().map(|&at| gap[at]).sum::<f64>();
+            *g = 0.25 * four.iter().map(|&at| gap[at]).sum::<f32>();
             *p = 0.25
                 * four
                     .iter()
                     .zip(is_active)
                     .filter(|(_, active)| *active || !is_any)
                     .map(|(&at, _)| pressure[at])
-                    .sum::<f64>();
+                    .sum::<f32>();
         }
     });
     [gaps, pressures]
 }
 
 /// The value of a field on a coarser grid at an element of one with twice these elements, by bilinear interpolation.
-fn interpolated(coarse: &[f64], [nx, ny]: [usize; 2], at: usize) -> f64 {
+fn interpolated(coarse: &[f32], [nx, ny]: [usize; 2], at: usize) -> f32 {
     let near = |i: usize, n: usize| {
         let half = n / 2;
         [i / 2, if i.is_multiple_of(2) { (i / 2 + half - 1) % half } else { (i / 2 + 1) % half }]
@@ -195,7 +213,7 @@ fn interpolated(coarse: &[f64], [nx, ny]: [usize; 2], at: usize) -> f64 {
 }
 
 /// The tiles at elements with a gap or a tensile pressure, in a block of rows from `first` on.
-fn tiles_at_pools(grid: Grid, first: usize, [pressure, gap]: [&[f64]; 2]) -> Vec<[u32; 2]> {
+fn tiles_at_pools(grid: Grid, first: usize, [pressure, gap]: [&[f32]; 2]) -> Vec<[u32; 2]> {
     let (nx, ny) = (grid.nx(), grid.ny());
     let tiles = |i: usize, n: usize| [(i + n - MARGIN) % n / TILE, (i + MARGIN) % n / TILE];
     let mut places = Vec::new();

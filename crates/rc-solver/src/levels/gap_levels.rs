@@ -14,12 +14,12 @@ use crate::descent::state::{Descent, Start};
 use crate::descent::values::Values;
 use crate::grid::operators::no_operators;
 use crate::grid::response::GridResponse;
-use crate::levels::gap_cycle::GapGrid;
+use crate::levels::gap_cycle::{GapGrid, Shape};
 use crate::levels::gap_prolongation::prolong_gap;
-use crate::levels::gap_side;
+use crate::levels::gap_side::{self, Gap};
 use crate::levels::grids::GridLevels;
 use crate::levels::nested::{History, Levels as _, Nested};
-use crate::parallel::{self, rms};
+use crate::parallel;
 use crate::problem::tolerance::Measure;
 
 /// Number of grids that are solved for the gap.
@@ -112,35 +112,41 @@ fn climb<'a>(
 ) -> Option<Solved<'a>> {
     let problem = grids.problem();
     let mean = problem.bounds.mean()?;
-    let response = GridResponse::of(grids.grid(0), kernel);
+    let response = GridResponse::of(grids.grid(0), kernel).factors;
     let mut on_grids = GapGrid::nested(grids.grid(0), kernel, &response, problem.unit());
+    let response = response.to_single();
+    let shape = |above: usize| Shape {
+        heights: grids.heights(above).values(),
+        mean_height: problem.h_mean,
+        mean_pressure: mean,
+    };
     let mut history = History { levels: history.levels.clone(), coarser: None };
-    let mut gap =
-        prolong_gap([&base.pressure(), &base.gap()], base.contact_gap(), [base.grid(), grids.grid(LEVELS - 1)]);
+    let of_base = |values: &[f64], zero: f64, unit: f64| values.iter().map(|v| ((v - zero) / unit) as f32).collect();
+    let (pressure, gap) =
+        (of_base(&base.pressure(), 0.0, 1.0), of_base(&base.gap(), base.contact_gap(), problem.unit()));
+    let mut gap = prolong_gap([pressure, gap], problem.unit(), [base.grid(), grids.grid(LEVELS - 1)]);
     for above in (1..LEVELS).rev() {
         let grid = grids.grid(above);
         nested.announce(grid, above);
-        let [better, mut pressure] =
-            gap_side::improve(gap, grids.heights(above), (&mut on_grids[above..], true), (problem, mean));
+        let Gap { gap: better, mut pressure, .. } = Gap::improved(gap, shape(above), (&mut on_grids[above..], true));
         gap_side::allow(&mut pressure, &better, (grid.nx(), on_grids[above].closing()));
         history.levels.push(level_info(grid, 2));
         history.coarser = Some(LevelValues {
-            rms_pressure: rms(&pressure, grid.nx()),
-            penetration: problem.h_max - problem.h_mean - mean_of(&better, grid.nx()),
+            rms_pressure: mean_of(&pressure, grid.nx(), |p| p * p).sqrt(),
+            penetration: problem.h_max - problem.h_mean - problem.unit() * mean_of(&better, grid.nx(), |g| g),
             friction: None,
         });
         if nested.observer.should_stop() {
             return None;
         }
-        gap = prolong_gap([&pressure, &better], 0.0, [grid, grids.grid(above - 1)]);
+        gap = prolong_gap([pressure, better], problem.unit(), [grid, grids.grid(above - 1)]);
     }
     let (heights, grid) = (grids.heights(0), grids.grid(0));
     nested.announce(grid, 0);
     let (is_cycle, goal) = (contact < NEARLY_FULL, goal_of(nested));
-    let improved = gap_side::improve(gap, heights, (&mut on_grids, is_cycle), (problem, mean));
+    let improved = Gap::improved(gap, shape(0), (&mut on_grids, is_cycle));
     let should_stop = || nested.observer.should_stop();
-    let solution =
-        gap_side::solve(improved, heights, (&mut on_grids, &response), (problem, mean), (goal, &should_stop));
+    let solution = improved.solve((&mut on_grids, &response), (grid, problem), (goal, &should_stop));
     let start = Start::Known { pressure: Values::Double(solution.pressure), gap: Values::Double(solution.gap) };
     let mut descent = Descent::without_steps(heights.values(), grid, no_operators(grid), problem, start);
     descent.info = level_info(grid, solution.applications + if is_cycle { 2 } else { 1 });
@@ -155,8 +161,8 @@ fn level_info(grid: Grid, operator_applications: usize) -> LevelInfo {
     LevelInfo { grid, iterations: 0, operator_applications, preconditioner_applications: 0 }
 }
 
-/// The mean of values, in pieces of `len`.
-fn mean_of(values: &[f64], len: usize) -> f64 {
-    let sums = parallel::map(values.chunks(len), |values| values.iter().sum::<f64>());
+/// The mean of a function of values, summed in pieces of `len`.
+fn mean_of(values: &[f32], len: usize, of: impl Fn(f64) -> f64 + Sync) -> f64 {
+    let sums = parallel::map(values.chunks(len), |values| values.iter().map(|v| of(f64::from(*v))).sum::<f64>());
     sums.into_iter().sum::<f64>() / values.len() as f64
 }

@@ -9,21 +9,21 @@ use rc_core::Grid;
 use crate::parallel;
 
 /// Weights of the coarse values before, at, behind and beyond a fine centre, which is a quarter of an element away.
-const CUBIC: [f64; 4] = [-7.0 / 128.0, 105.0 / 128.0, 35.0 / 128.0, -5.0 / 128.0];
+const CUBIC: [f32; 4] = [-7.0 / 128.0, 105.0 / 128.0, 35.0 / 128.0, -5.0 / 128.0];
 
 /// Typical distance of the centres on either side of an edge, in elements.
-const EDGE_DISTANCE: f64 = 0.7;
+const EDGE_DISTANCE: f32 = 0.7;
 
 /// Largest distance from an edge that matters, in elements.
-const FARTHEST: f64 = 3.0;
+const FARTHEST: f32 = 3.0;
 
 /// The gap on a `finer` grid with twice the elements along both axes, from pressure and gap. It is zero in contact.
 ///
-/// `zero` is the gap of contact.
-pub(super) fn prolong_gap([pressure, gap]: [&[f64]; 2], zero: f64, [grid, finer]: [Grid; 2]) -> Vec<f64> {
-    let pools = CoarsePools::new([pressure, gap], zero, grid);
-    let edges = pools.edges(pressure, grid.spacing().x);
-    let mut fine = parallel::zeros(finer.len());
+/// Gaps are in units of `unit`.
+pub(super) fn prolong_gap([pressure, gap]: [Vec<f32>; 2], unit: f64, [grid, finer]: [Grid; 2]) -> Vec<f32> {
+    let pools = CoarsePools::new(gap, &pressure, grid);
+    let edges = pools.edges(&pressure, (grid.spacing().x as f32, unit as f32));
+    let mut fine = vec![0.0; finer.len()];
     parallel::for_each(fine.chunks_mut(finer.nx()).enumerate(), |(y, row)| pools.prolong_row(&edges, y, row));
     fine
 }
@@ -31,24 +31,24 @@ pub(super) fn prolong_gap([pressure, gap]: [&[f64]; 2], zero: f64, [grid, finer]
 /// The gap on a coarse grid.
 struct CoarsePools {
     sides: [usize; 2],
-    gap: Vec<f64>,
+    gap: Vec<f32>,
     /// Whether an element or a neighbour in its row has a gap.
     beside: Vec<bool>,
 }
 
 impl CoarsePools {
-    fn new([pressure, solved]: [&[f64]; 2], zero: f64, grid: Grid) -> Self {
+    fn new(mut gap: Vec<f32>, pressure: &[f32], grid: Grid) -> Self {
         let (nx, ny) = (grid.nx(), grid.ny());
-        let (mut gap, mut beside) = (vec![0.0; nx * ny], vec![false; nx * ny]);
+        let mut beside = vec![false; nx * ny];
         let rows = gap.chunks_mut(nx).zip(beside.chunks_mut(nx));
-        let solved = pressure.chunks(nx).zip(solved.chunks(nx));
-        parallel::for_each(rows.zip(solved), |((row, beside), (pressure, gap))| {
+        parallel::for_each(rows.zip(pressure.chunks(nx)), |((gap, beside), pressure)| {
             for (x, (p, g)) in pressure.iter().zip(gap).enumerate() {
-                if *p <= 0.0 && *g > zero {
-                    row[x] = g - zero;
+                if *p <= 0.0 && *g > 0.0 {
                     for x in [(x + nx - 1) % nx, x, (x + 1) % nx] {
                         beside[x] = true;
                     }
+                } else {
+                    *g = 0.0;
                 }
             }
         });
@@ -63,7 +63,7 @@ impl CoarsePools {
     }
 
     /// The power 2/3 of the gap, continued into contact. Away from edges of contact it is zero.
-    fn edges(&self, pressure: &[f64], side: f64) -> Vec<f64> {
+    fn edges(&self, pressure: &[f32], (side, unit): (f32, f32)) -> Vec<f32> {
         let [nx, ny] = self.sides;
         let mut edges = vec![0.0; nx * ny];
         parallel::for_each(edges.chunks_mut(nx).enumerate(), |(y, row)| {
@@ -74,7 +74,7 @@ impl CoarsePools {
                 } else {
                     let (p, slope) = (pressure[y * nx + x], self.slope([x, y]) / (EDGE_DISTANCE * side));
                     // g^{2/3} = slope · s outside, and p = c √s inside with g = (4c/3) s^{3/2}.
-                    let c = 0.75 * slope.powf(1.5);
+                    let c = 0.75 * unit * slope.powf(1.5);
                     -slope * (p / c).powi(2).min(FARTHEST * side)
                 };
             }
@@ -83,7 +83,7 @@ impl CoarsePools {
     }
 
     /// The mean of g^{2/3} over the neighbours of an element that have a gap.
-    fn slope(&self, [x, y]: [usize; 2]) -> f64 {
+    fn slope(&self, [x, y]: [usize; 2]) -> f32 {
         let [nx, ny] = self.sides;
         let (mut sum, mut count) = (0.0, 0.0);
         for y in [y + ny - 1, y, y + 1] {
@@ -98,7 +98,7 @@ impl CoarsePools {
         sum / count
     }
 
-    fn prolong_row(&self, edges: &[f64], y: usize, row: &mut [f64]) {
+    fn prolong_row(&self, edges: &[f32], y: usize, row: &mut [f32]) {
         let [nx, ny] = self.sides;
         let rows = around(y, ny).map(|y| y * nx);
         for (x, _) in self.near(y / 2).into_iter().enumerate().filter(|(_, near)| *near) {
@@ -108,7 +108,7 @@ impl CoarsePools {
         }
     }
 
-    fn value(&self, edges: &[f64], rows: [usize; 4], columns: [usize; 4]) -> f64 {
+    fn value(&self, edges: &[f32], rows: [usize; 4], columns: [usize; 4]) -> f32 {
         let (mut is_inside, mut cubic) = (true, 0.0);
         for (row, wy) in rows.iter().zip(CUBIC) {
             for (column, wx) in columns.iter().zip(CUBIC) {

@@ -6,8 +6,8 @@
 //! p(g) = σ0 + K (h + g),        p ≥ 0,  g ≥ 0,  g p = 0.
 //! ```
 //!
-//! The gap is interpolated from the coarser grid, and cycles correct it ([`crate::levels::gap_cycle`]). One application
-//! of K in double precision then gives p(g). Taking p - k g where it is positive, with the k of an element whose gap
+//! The gap is interpolated from the coarser grid, and cycles correct it ([`crate::levels::gap_cycle`]). One more
+//! application of K gives p(g). Taking p - k g where it is positive, with the k of an element whose gap
 //! closes alone, and zero elsewhere, and restoring the load nearby, makes a pressure p̂ that is admissible. With
 //! x = p̂ - p(g), the gap of p̂ is g + L x up to a constant, and the exact pressure p* and gap g* obey
 //!
@@ -20,13 +20,13 @@
 
 use std::ops::Range;
 
-use rc_core::{Field, Grid};
+use rc_core::Grid;
 use rc_fft::{BLOCK_ROWS, Convolution};
 
 use crate::descent::sums::GapSums;
+use crate::grid::factors::Factors;
 use crate::grid::passes::{layout, read_rows, write_rows};
-use crate::grid::response::GridResponse;
-use crate::levels::gap_cycle::{GapGrid, cycle};
+use crate::levels::gap_cycle::{GapGrid, Shape, cycle};
 use crate::parallel::{self, Tasks};
 use crate::problem::checked::Problem;
 
@@ -63,60 +63,74 @@ const MAX_CYCLES: usize = 2;
 /// Ratio of the errors before and after a cycle above which there is no other one.
 const LEAST_FALL: f64 = 0.5;
 
-/// Improves a `gap` that was interpolated to the first of `grids`. Returns it with its pressure.
-///
-/// Either a cycle does, or only steps near pools.
-pub(super) fn improve(
-    mut gap: Vec<f64>,
-    heights: &Field,
-    (grids, is_cycle): (&mut [GapGrid], bool),
-    (problem, mean): (&Problem, f64),
-) -> [Vec<f64>; 2] {
-    let mut pressure = parallel::zeros(gap.len());
-    let shape = |at: usize| heights.values()[at] - problem.h_mean + gap[at];
-    grids[0].pressure_under(mean, shape, &mut pressure);
-    if is_cycle {
-        cycle(grids, 0, &mut gap, &mut pressure);
-    } else {
-        grids[0].relax(&mut gap, &mut pressure);
-    }
-    [gap, pressure]
+/// A gap on a grid, and the pressure σ0 + K (h + g) that it was last known to have.
+pub(super) struct Gap<'a> {
+    pub(super) shape: Shape<'a>,
+    /// In units of [`Problem::unit`].
+    pub(super) gap: Vec<f32>,
+    /// In E*.
+    pub(super) pressure: Vec<f32>,
 }
 
-/// The solution on the first of `grids` that follows from an improved gap and its pressure.
-///
-/// Cycles go on until its error, in units of √U, is within the `goal`, or no longer falls.
-pub(super) fn solve(
-    [gap, pressure]: [Vec<f64>; 2],
-    heights: &Field,
-    (grids, response): (&mut [GapGrid], &GridResponse),
-    (problem, mean): (&Problem, f64),
-    (goal, should_stop): (f64, &dyn Fn() -> bool),
-) -> GapSolution {
-    let mut side = GapSide { grid: heights.grid(), heights: heights.values(), problem, mean, pressure, gap };
-    let (mut last, mut n_cycles) = (f64::INFINITY, 0);
-    loop {
-        let pieces = side.fresh(response, grids[0].closing());
-        let error = side.displace(grids[0].convolution(), response, &pieces);
-        let relative = (error / pieces.energy).sqrt();
-        let has_fallen = relative < LEAST_FALL * last;
-        if relative <= goal || n_cycles == MAX_CYCLES || !has_fallen || should_stop() {
-            let (sums, applications) = (side.make_admissible(grids[0].convolution(), &pieces), 2 + 3 * n_cycles);
-            let GapSide { pressure, gap, .. } = side;
-            return GapSolution { pressure, gap, sums, error, applications };
+impl<'a> Gap<'a> {
+    /// A `gap` that was interpolated to the first of `grids`, improved.
+    ///
+    /// Either a cycle does, or only steps near pools.
+    pub(super) fn improved(gap: Vec<f32>, shape: Shape<'a>, (grids, is_cycle): (&mut [GapGrid], bool)) -> Self {
+        let (mut gap, mut pressure) = (gap, vec![0.0; shape.heights.len()]);
+        grids[0].pressure_under(&shape, &gap, &mut pressure, |_, _| ());
+        if is_cycle {
+            cycle(grids, 0, &mut gap, &mut pressure);
+        } else {
+            grids[0].relax(&mut gap, &mut pressure);
         }
-        cycle(grids, 0, &mut side.gap, &mut side.pressure);
-        (last, n_cycles) = (relative, n_cycles + 1);
+        Self { shape, gap, pressure }
     }
-}
 
-struct GapSide<'a> {
-    grid: Grid,
-    heights: &'a [f64],
-    problem: &'a Problem,
-    mean: f64,
-    pressure: Vec<f64>,
-    gap: Vec<f64>,
+    /// The solution on the first of `grids` that follows. `response` is L.
+    ///
+    /// Cycles go on until its error, in units of √U, is within the `goal`, or no longer falls.
+    pub(super) fn solve(
+        mut self,
+        (grids, response): (&mut [GapGrid], &Factors<f32>),
+        (grid, problem): (Grid, &Problem),
+        (goal, should_stop): (f64, &dyn Fn() -> bool),
+    ) -> GapSolution {
+        let (mut last, mut n_cycles) = (f64::INFINITY, 0);
+        loop {
+            let pieces = self.fresh(&mut grids[0], (grid, problem.unit()));
+            let side = GapSide { grid, unit: problem.unit(), state: &self, pieces };
+            let error = side.displace(grids[0].convolution(), response);
+            let relative = (error / side.pieces.energy).sqrt();
+            let has_fallen = relative < LEAST_FALL * last;
+            if relative <= goal || n_cycles == MAX_CYCLES || !has_fallen || should_stop() {
+                let ([pressure, gap], sums) = side.admissible(grids[0].convolution(), problem);
+                return GapSolution { pressure, gap, sums, error, applications: 2 + 3 * n_cycles };
+            }
+            cycle(grids, 0, &mut self.gap, &mut self.pressure);
+            (last, n_cycles) = (relative, n_cycles + 1);
+        }
+    }
+
+    /// Computes p(g) afresh.
+    fn fresh(&mut self, on_grid: &mut GapGrid, (grid, unit): (Grid, f64)) -> Pieces {
+        let (shape, closing) = (&self.shape, on_grid.closing());
+        let len = BLOCK_ROWS * grid.nx();
+        let noted = on_grid.pressure_under(shape, &self.gap, &mut self.pressure, |i, [gap, pressure]| {
+            let heights = &shape.heights[i * len..][..gap.len()];
+            let (mut works, mut gaps) = (0.0, 0.0);
+            for (p, (g, h)) in pressure.iter().zip(gap.iter().zip(heights)) {
+                let g = unit * f64::from(*g);
+                works += (f64::from(*p) - shape.mean_pressure) * (h - shape.mean_height + g);
+                gaps += g;
+            }
+            (loads_of_block((grid.nx(), closing), pressure, gap), [gaps, 0.5 * works])
+        });
+        let (loads, sums): (Vec<_>, Vec<[f64; 2]>) = noted.into_iter().unzip();
+        let n = grid.len() as f64;
+        let means = [0, 1].map(|k| sums.iter().map(|sum| sum[k]).sum::<f64>() / n);
+        Pieces::new(&loads, shape.mean_pressure * n, means, closing)
+    }
 }
 
 /// The factors that restore the load of pieces, the mean gap, and the energy U.
@@ -125,7 +139,7 @@ struct Pieces {
     factors: Vec<Vec<f64>>,
     mean_gap: f64,
     energy: f64,
-    closing: f64,
+    closing: f32,
 }
 
 impl Pieces {
@@ -133,7 +147,7 @@ impl Pieces {
     ///
     /// The loads are those of blocks, piece by piece. What a piece cannot take goes to the pieces around it, in squares of
     /// growing size. The cell takes the rest, so that the load becomes `whole`.
-    fn new(loads: &[Vec<[f64; 2]>], whole: f64, [mean_gap, energy, closing]: [f64; 3]) -> Self {
+    fn new(loads: &[Vec<[f64; 2]>], whole: f64, [mean_gap, energy]: [f64; 2], closing: f32) -> Self {
         let mut factors: Vec<Vec<f64>> = loads.iter().map(|block| vec![1.0; block.len()]).collect();
         let (n_blocks, n_pieces) = (loads.len(), loads.first().map_or(0, Vec::len));
         let (mut rows, mut columns) = (1, 1);
@@ -155,11 +169,6 @@ impl Pieces {
         factors.iter_mut().flatten().for_each(|factor| *factor *= whole / after);
         Self { factors, mean_gap, energy, closing }
     }
-
-    /// The pressure p̂ of an element in block `i`.
-    fn admissible(&self, (i, x): (usize, usize), pressure: f64, gap: f64) -> f64 {
-        allowed(pressure, gap, self.closing) * self.factors[i][x / PIECE]
-    }
 }
 
 /// The loads of some blocks and pieces, before and after, with the factors on the latter.
@@ -177,111 +186,111 @@ fn load_of(loads: &[Vec<[f64; 2]>], factors: &[Vec<f64>], (blocks, pieces): (Ran
 /// The pressure of an element whose gap closes alone, or zero.
 ///
 /// `closing` is the pressure by which the element itself answers to a gap of 1.
-fn allowed(pressure: f64, gap: f64, closing: f64) -> f64 {
+fn allowed(pressure: f32, gap: f32, closing: f32) -> f32 {
     (pressure - closing * gap).max(0.0)
 }
 
 /// Sets pressures to zero where they must not be.
-pub(super) fn allow(pressure: &mut [f64], gap: &[f64], (nx, closing): (usize, f64)) {
+pub(super) fn allow(pressure: &mut [f32], gap: &[f32], (nx, closing): (usize, f32)) {
     parallel::for_each(pressure.chunks_mut(nx).zip(gap.chunks(nx)), |(pressure, gap)| {
         pressure.iter_mut().zip(gap).for_each(|(p, g)| *p = allowed(*p, *g, closing));
     });
 }
 
+/// A gap whose pressure is known afresh, and the pressure p̂ that follows.
+struct GapSide<'a> {
+    grid: Grid,
+    unit: f64,
+    state: &'a Gap<'a>,
+    pieces: Pieces,
+}
+
 impl GapSide<'_> {
-    fn len(&self) -> usize {
-        BLOCK_ROWS * self.grid.nx()
+    /// Calls `of_piece` with each piece of block `i`: its factor, and its elements in the block.
+    fn for_each_piece(&self, (i, n): (usize, usize), mut of_piece: impl FnMut(f64, Range<usize>)) {
+        for start in (0..n).step_by(PIECE) {
+            of_piece(self.pieces.factors[i][start % self.grid.nx() / PIECE], start..start + PIECE);
+        }
     }
 
-    /// Computes p(g) afresh, in double precision.
-    fn fresh(&mut self, response: &GridResponse, closing: f64) -> Pieces {
-        let (grid, len, mean) = (self.grid, self.len(), self.mean);
-        let (gap, heights, h_mean) = (&self.gap, self.heights, self.problem.h_mean);
-        let mut convolution = Convolution::new(grid);
-        write_rows(&mut convolution, &|i, rows| {
-            let here = i * len..i * len + rows.len();
-            for ((row, h), g) in rows.iter_mut().zip(&heights[here.clone()]).zip(&gap[here]) {
-                *row = h - h_mean + g;
-            }
-        });
-        response.factors.inverse(grid).apply(&mut convolution);
-        let tasks = Tasks::new(self.pressure.chunks_mut(len).zip(gap.chunks(len).zip(heights.chunks(len))));
-        read_rows(&convolution, &|i, rows| {
-            tasks.run(i, |(pressure, (gap, heights)): (&mut [f64], (&[f64], &[f64]))| {
-                let mut works = 0.0;
-                for ((p, row), (g, h)) in pressure.iter_mut().zip(rows).zip(gap.iter().zip(heights)) {
-                    *p = mean + row;
-                    works += row * (h - h_mean + g);
-                }
-                (loads_of_block((grid.nx(), closing), pressure, gap), [gap.iter().sum::<f64>(), 0.5 * works])
-            });
-        });
-        let (loads, sums): (Vec<_>, Vec<[f64; 2]>) = tasks.into_results().into_iter().unzip();
-        let n = grid.len() as f64;
-        let [mean_gap, energy] = [0, 1].map(|k| sums.iter().map(|sum| sum[k]).sum::<f64>() / n);
-        Pieces::new(&loads, mean * n, [mean_gap, energy, closing])
+    /// Gap and pressure of block `i`.
+    fn block(&self, i: usize) -> [&[f32]; 2] {
+        let (len, Gap { gap, pressure, .. }) = (BLOCK_ROWS * self.grid.nx(), self.state);
+        [gap, pressure].map(|values| &values[i * len..values.len().min((i + 1) * len)])
     }
 
     /// Computes the displacement by the change x to the pressure p̂, and returns the bound on the error.
-    fn displace(&self, quick: &mut Convolution<f32>, response: &GridResponse, pieces: &Pieces) -> f64 {
-        let (len, nx, unit) = (self.len(), self.grid.nx(), self.problem.unit());
-        let (pressure, gap) = (&self.pressure, &self.gap);
-        let admissible = |i: usize, at: usize| {
-            let (p, g) = (pressure[i * len + at], gap[i * len + at]);
-            (pieces.admissible((i, at % nx), p, g), p, g)
-        };
+    fn displace(&self, quick: &mut Convolution<f32>, response: &Factors<f32>) -> f64 {
+        let (unit, closing) = (self.unit, self.pieces.closing);
+        let change = |factor: f64, p: f32, g: f32| factor * f64::from(allowed(p, g, closing)) - f64::from(p);
         write_rows(quick, &|i, rows| {
-            for (at, row) in rows.iter_mut().enumerate() {
-                let (allowed, p, _) = admissible(i, at);
-                *row = ((allowed - p) / unit) as f32;
-            }
+            let [gap, pressure] = self.block(i);
+            self.for_each_piece((i, rows.len()), |factor, piece| {
+                let elements = pressure[piece.clone()].iter().zip(&gap[piece.clone()]);
+                for (row, (p, g)) in rows[piece].iter_mut().zip(elements) {
+                    *row = (change(factor, *p, *g) / unit) as f32;
+                }
+            });
         });
-        response.factors.to_single().apply(quick);
-        let tasks = Tasks::new(pressure.chunks(len));
+        response.apply(quick);
+        let tasks = Tasks::new(self.pieces.factors.iter());
         read_rows(quick, &|i, rows| {
             tasks.run(i, |_| {
-                rows.iter().enumerate().fold([0.0; 2], |[work, closed], (at, row)| {
-                    let (allowed, p, g) = admissible(i, at);
-                    [work + (allowed - p) * unit * f64::from(*row), closed + allowed * g]
-                })
+                let ([gap, pressure], [mut work, mut closed]) = (self.block(i), [0.0; 2]);
+                self.for_each_piece((i, rows.len()), |factor, piece| {
+                    let elements = pressure[piece.clone()].iter().zip(&gap[piece.clone()]);
+                    for (row, (p, g)) in rows[piece].iter().zip(elements) {
+                        work += change(factor, *p, *g) * f64::from(*row);
+                        closed += factor * f64::from(allowed(*p, *g, closing) * g);
+                    }
+                });
+                [work, closed]
             });
         });
         let sums = tasks.into_results();
-        let [work, closed] = [0, 1].map(|k| sums.iter().map(|sum| sum[k]).sum::<f64>() / self.grid.len() as f64);
+        let of = |k: usize| unit * sums.iter().map(|sum| sum[k]).sum::<f64>() / self.grid.len() as f64;
+        let [work, closed] = [of(0), of(1)];
         // e² ≤ ⟨p̂ g⟩ + e ‖x‖.
         (0.5 * work.sqrt() + (0.25 * work + closed).sqrt()).powi(2)
     }
 
-    /// Makes the pressure p̂ and its gap, from the displacement of the change. Returns sums over the result.
-    fn make_admissible(&mut self, quick: &Convolution<f32>, pieces: &Pieces) -> GapSums {
-        let (len, nx, unit) = (self.len(), self.grid.nx(), self.problem.unit());
-        let (floor, shift) = (self.problem.offset(), -self.problem.h_mean - pieces.mean_gap);
-        let blocks = self.pressure.chunks_mut(len).zip(self.gap.chunks_mut(len)).zip(self.heights.chunks(len));
-        let tasks = Tasks::new(blocks);
+    /// The pressure p̂ and its gap, from the displacement by the change, with sums over both.
+    fn admissible(&self, quick: &Convolution<f32>, problem: &Problem) -> ([Vec<f64>; 2], GapSums) {
+        let (len, closing, heights) = (BLOCK_ROWS * self.grid.nx(), self.pieces.closing, self.state.shape.heights);
+        let floor = problem.offset();
+        let shift = floor - problem.h_mean - self.pieces.mean_gap;
+        let [mut pressure, mut gap] = [(); 2].map(|()| vec![0.0; self.grid.len()]);
+        let tasks = Tasks::new(pressure.chunks_mut(len).zip(gap.chunks_mut(len)).zip(heights.chunks(len)));
         let empty = GapSums::empty(f64::INFINITY, f64::INFINITY);
         read_rows(quick, &|i, rows| {
-            tasks.run(i, |((pressure, gap), heights): ((&mut [f64], &mut [f64]), &[f64])| {
-                let mut sums = empty;
-                for (at, (((p, g), h), row)) in pressure.iter_mut().zip(gap).zip(heights).zip(rows).enumerate() {
-                    *p = pieces.admissible((i, at % nx), *p, *g);
-                    *g += unit * f64::from(*row) + shift + floor;
-                    sums.add_element(*p, *g, h - floor);
-                }
+            tasks.run(i, |((to_pressure, to_gap), heights): ((&mut [f64], &mut [f64]), &[f64])| {
+                let ([gap, pressure], mut sums) = (self.block(i), empty);
+                self.for_each_piece((i, rows.len()), |factor, piece| {
+                    let known = pressure[piece.clone()].iter().zip(&gap[piece.clone()]);
+                    let known = known.zip(rows[piece.clone()].iter().zip(&heights[piece.clone()]));
+                    let to = to_pressure[piece.clone()].iter_mut().zip(&mut to_gap[piece]);
+                    for ((to_p, to_g), ((p, g), (row, h))) in to.zip(known) {
+                        *to_p = factor * f64::from(allowed(*p, *g, closing));
+                        *to_g = self.unit * (f64::from(*g) + f64::from(*row)) + shift;
+                        sums.add_element(*to_p, *to_g, h - floor);
+                    }
+                });
                 sums
             });
         });
-        GapSums::total(&layout(self.grid), tasks.into_results())
+        let sums = GapSums::total(&layout(self.grid), tasks.into_results());
+        ([pressure, gap], sums)
     }
 }
 
 /// The loads of the pieces of a block, before and after pressures are set to zero.
-fn loads_of_block((nx, closing): (usize, f64), pressure: &[f64], gap: &[f64]) -> Vec<[f64; 2]> {
-    let mut loads = vec![[0.0; 2]; nx.div_ceil(PIECE)];
+fn loads_of_block((nx, closing): (usize, f32), pressure: &[f32], gap: &[f32]) -> Vec<[f64; 2]> {
+    let mut loads = vec![[0.0; 2]; nx / PIECE];
     for (pressure, gap) in pressure.chunks(nx).zip(gap.chunks(nx)) {
         for ((pressure, gap), [before, after]) in pressure.chunks(PIECE).zip(gap.chunks(PIECE)).zip(&mut loads) {
             for (p, g) in pressure.iter().zip(gap) {
-                *before += p;
-                *after += allowed(*p, *g, closing);
+                *before += f64::from(*p);
+                *after += f64::from(allowed(*p, *g, closing));
             }
         }
     }

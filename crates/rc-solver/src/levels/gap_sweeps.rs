@@ -30,8 +30,8 @@ pub(super) struct NearKernel {
     taps: Taps<f32>,
     passes: TilePasses<f32>,
     arch: Arch,
-    /// The pressure of an element alone that answers to its gap, in E*/λ.
-    pub(super) closing: f64,
+    /// The pressure of an element alone that answers to a gap of one unit, in E*.
+    pub(super) closing: f32,
 }
 
 impl NearKernel {
@@ -40,7 +40,8 @@ impl NearKernel {
         let sizes = <f32 as Real>::SIZES[0];
         let (weights, reach) = (lattice_kernel(kernel), RADIUS as i32);
         let ratio = grid.nx() as f64 / LATTICE as f64;
-        let (factor, closing) = (unit * ratio, ratio * weights[0][0]);
+        let factor = unit * ratio;
+        let closing = (factor * weights[0][0]) as f32;
         let weight = |dx: i32, dy: i32| {
             let is_near = dx * dx + dy * dy <= reach * reach;
             if is_near { factor * weights[dy.unsigned_abs() as usize][dx.unsigned_abs() as usize] } else { 0.0 }
@@ -85,23 +86,22 @@ pub(super) struct Pools {
 }
 
 impl Pools {
-    /// The tiles at the places, from the values of the whole grid. Gaps are in units of `unit`.
-    pub(super) fn new(grid: Grid, places: Vec<[u32; 2]>, [gap, pressure]: [&[f64]; 2], unit: f64) -> Self {
+    /// The tiles at the places, from the values of the whole grid.
+    pub(super) fn new(grid: Grid, places: Vec<[u32; 2]>, [gap, pressure]: [&[f32]; 2]) -> Self {
         let tiles = TileSet::new([grid.nx(), grid.ny()], places);
-        let take = |values: &[f64], unit: f64| {
+        let take = |values: &[f32]| {
             let mut taken = vec![0.0; tiles.n_cells()];
             let blocks = tiles.places().chunks(BLOCK_TILES).zip(taken.chunks_mut(BLOCK_CELLS));
             parallel::for_each(blocks, |(places, cells)| {
                 for (&place, cells) in places.iter().zip(cells.chunks_mut(CELLS)) {
                     for (y, row) in cells.chunks_mut(TILE).enumerate() {
-                        let from = &values[first_of_row(grid, place, y)..][..TILE];
-                        row.iter_mut().zip(from).for_each(|(to, from)| *to = (from / unit) as f32);
+                        row.copy_from_slice(&values[first_of_row(grid, place, y)..][..TILE]);
                     }
                 }
             });
             taken
         };
-        let (gap, pressure) = (take(gap, unit), take(pressure, 1.0));
+        let (gap, pressure) = (take(gap), take(pressure));
         Self { tiles, gap, pressure }
     }
 
@@ -179,31 +179,30 @@ impl Pools {
     }
 
     /// Writes gap and pressure to those of the whole grid.
-    pub(super) fn put(&self, grid: Grid, [gap, pressure]: [&mut [f64]; 2], unit: f64) {
+    pub(super) fn put(&self, grid: Grid, [gap, pressure]: [&mut [f32]; 2]) {
         let row_of_tiles = TILE * grid.nx();
         let mut rows = vec![Vec::new(); grid.ny() / TILE];
         for (tile, place) in self.tiles.places().iter().enumerate() {
             rows[place[1] as usize].push(tile);
         }
-        let put = |values: &[f32], unit: f64, whole: &mut [f64]| {
+        let put = |values: &[f32], whole: &mut [f32]| {
             parallel::for_each(whole.chunks_mut(row_of_tiles).zip(&rows), |(whole, tiles)| {
                 for &tile in tiles {
                     let column = self.tiles.places()[tile][0];
                     for (y, row) in values[tile * CELLS..][..CELLS].chunks(TILE).enumerate() {
-                        let to = &mut whole[first_of_row(grid, [column, 0], y)..][..TILE];
-                        to.iter_mut().zip(row).for_each(|(to, value)| *to = unit * f64::from(*value));
+                        whole[first_of_row(grid, [column, 0], y)..][..TILE].copy_from_slice(row);
                     }
                 }
             });
         };
-        put(&self.gap, unit, gap);
-        put(&self.pressure, 1.0, pressure);
+        put(&self.gap, gap);
+        put(&self.pressure, pressure);
     }
 }
 
 /// Whether an element has a gap, or may open.
-pub(super) fn is_active<T: Copy + PartialOrd + From<i8>>(gap: T, pressure: T) -> bool {
-    gap > T::from(0) || pressure < T::from(0)
+pub(super) fn is_active(gap: f32, pressure: f32) -> bool {
+    gap > 0.0 || pressure < 0.0
 }
 
 /// The index of the first element of row `y` of a tile.
