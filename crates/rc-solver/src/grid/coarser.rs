@@ -3,6 +3,7 @@
 use rc_core::{Boundary, Field, Grid};
 
 use crate::grid::interpolation::interpolate;
+use crate::parallel;
 use rc_fft::has_small_factors;
 
 /// Minimum number of elements across a long cell on its coarsest grid.
@@ -104,7 +105,7 @@ fn floor(heights: &Field) -> f64 {
     // An odd step does not stay in one column of a grid with even sides.
     let step = (values.len() / SAMPLES) | 1;
     let mut samples: Vec<f64> = values.iter().copied().step_by(step).collect();
-    let highest = heights.max();
+    let highest = parallel::maximum(values, f64::NEG_INFINITY);
     let quarter = samples.len() / 4;
     let (_, quartile, _) = samples.select_nth_unstable_by(quarter, f64::total_cmp);
     let depth = highest - *quartile;

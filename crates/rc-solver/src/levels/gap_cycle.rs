@@ -6,13 +6,11 @@
 //! solution stays one (a truncated full approximation scheme, Kornhuber 1994).
 
 use rc_core::{Grid, Kernel};
-use rc_fft::{BLOCK_ROWS, Convolution};
+use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
 use rc_quadtree::TILE;
 
-use crate::grid::factors::Factors;
 use crate::grid::passes::{read_rows, write_rows};
-use crate::grid::response::GridResponse;
-use crate::levels::gap_sweeps::{NearKernel, Pools, is_active};
+use crate::levels::gap_sweeps::{NearKernel, NearWeights, Pools, is_active};
 use crate::parallel::{self, Tasks};
 
 /// Minimum number of elements along a side of the coarsest grid of a cycle.
@@ -21,13 +19,10 @@ const SMALLEST_SIDE: usize = 32;
 /// Elements of pools reach this far for the tiles that steps change.
 const MARGIN: usize = 2;
 
-/// Number of the finest grids that a cycle visits once.
-const ONE_VISIT: usize = 2;
-
 /// The operator K = L⁻¹ on a grid, and its kernel near an element.
 pub(super) struct GapGrid {
     grid: Grid,
-    inverse: Factors<f32>,
+    inverse: SymbolTable<f32>,
     near: NearKernel,
     convolution: Convolution<f32>,
     /// Gaps are in this unit.
@@ -42,14 +37,16 @@ pub(super) struct Shape<'a> {
 }
 
 impl GapGrid {
-    fn new(grid: Grid, kernel: &dyn Kernel, response: &Factors<f64>, unit: f64) -> Self {
-        let inverse = response.storage_inverse(grid);
-        Self { grid, inverse, near: NearKernel::new(kernel, grid, unit), convolution: Convolution::new(grid), unit }
-    }
-
-    /// The `finest` grid and those below it, finest first.
-    pub(super) fn nested(finest: Grid, kernel: &dyn Kernel, response: &Factors<f64>, unit: f64) -> Vec<Self> {
-        let mut grids = vec![Self::new(finest, kernel, response, unit)];
+    /// The `finest` grid and those below it, finest first. Also returns L on the finest one.
+    pub(super) fn nested(finest: Grid, kernel: &dyn Kernel, unit: f64) -> (Vec<Self>, SymbolTable<f32>) {
+        let near = NearWeights::of(kernel);
+        let with_table = |grid: Grid| {
+            let response = SymbolTable::new(grid, kernel.symbol(grid));
+            let (inverse, near) = (response.inverse(grid), NearKernel::new(&near, grid, unit));
+            (Self { grid, inverse, near, convolution: Convolution::new(grid), unit }, response)
+        };
+        let (first, response) = with_table(finest);
+        let mut grids = vec![first];
         let is_even = |n: usize| n.is_multiple_of(2 * TILE) && n >= 2 * SMALLEST_SIDE;
         let half = |grid: Grid| grid.with_elements(grid.nx() / 2, grid.ny() / 2).ok();
         let mut next = finest;
@@ -57,10 +54,10 @@ impl GapGrid {
             && is_even(next.ny())
             && let Some(grid) = half(next)
         {
-            grids.push(Self::new(grid, kernel, &GridResponse::of(grid, kernel).factors, unit));
+            grids.push(with_table(grid).0);
             next = grid;
         }
-        grids
+        (grids, response)
     }
 
     /// Number of elements of a block of rows.
@@ -93,7 +90,7 @@ impl GapGrid {
                 *row = ((h - shape.mean_height) / self.unit) as f32 + g;
             }
         });
-        self.inverse.apply(&mut self.convolution);
+        self.convolution.apply_symbol(&self.inverse);
         let (tasks, mean) = (Tasks::new(pressure.chunks_mut(len).zip(gap.chunks(len))), shape.mean_pressure as f32);
         read_rows(&self.convolution, &|i, rows| {
             tasks.run(i, |(pressure, gap): (&mut [f32], &[f32])| {
@@ -117,7 +114,7 @@ impl GapGrid {
                 }
             });
         }
-        self.inverse.apply(&mut self.convolution);
+        self.convolution.apply_symbol(&self.inverse);
         let tasks = Tasks::new(gap.chunks_mut(len).zip(pressure.chunks_mut(len)));
         read_rows(&self.convolution, &|i, rows| {
             tasks.run(i, |(gap, pressure): (&mut [f32], &mut [f32])| {
@@ -145,19 +142,13 @@ impl GapGrid {
 }
 
 /// Improves a gap on the first grid, whose pressure is known. The pressure follows near pools.
-///
-/// `depth` is the number of finer grids in the cycle. From the third grid on, each is visited twice, which costs little:
-/// on coarse grids, many elements are only partly in pools, and one visit does not correct long waves well.
-pub(super) fn cycle(grids: &mut [GapGrid], depth: usize, gap: &mut [f32], pressure: &mut [f32]) {
+pub(super) fn cycle(grids: &mut [GapGrid], gap: &mut [f32], pressure: &mut [f32]) {
     let Some((here, coarser)) = grids.split_first_mut() else { return };
-    let sides = [here.grid.nx(), here.grid.ny()];
-    if coarser.is_empty() {
-        return here.relax(gap, pressure);
-    }
-    for is_last in if depth < ONE_VISIT { &[true][..] } else { &[false, true] } {
+    if !coarser.is_empty() {
+        let sides = [here.grid.nx(), here.grid.ny()];
         let [before, mut coarse_pressure] = restricted(sides, gap, pressure);
         let mut correction = before.clone();
-        cycle(coarser, depth + 1, &mut correction, &mut coarse_pressure);
+        cycle(coarser, &mut correction, &mut coarse_pressure);
         let rows = correction.chunks_mut(sides[0]).zip(before.chunks(sides[0]));
         parallel::for_each(rows, |(after, before)| after.iter_mut().zip(before).for_each(|(g, before)| *g -= before));
         here.change(
@@ -166,14 +157,8 @@ pub(super) fn cycle(grids: &mut [GapGrid], depth: usize, gap: &mut [f32], pressu
                 if is_active(g, p) { interpolated(&correction, sides, at).max(-g) } else { 0.0 }
             },
         );
-        if *is_last {
-            here.relax(gap, pressure);
-        } else {
-            let [mut next, mut near] = [gap.to_vec(), pressure.to_vec()];
-            here.relax(&mut next, &mut near);
-            here.change([gap, pressure], |at, g, _| next[at] - g);
-        }
     }
+    here.relax(gap, pressure);
 }
 
 /// Gap and pressure on a grid with half the elements.

@@ -21,10 +21,9 @@
 use std::ops::Range;
 
 use rc_core::Grid;
-use rc_fft::{BLOCK_ROWS, Convolution};
+use rc_fft::{BLOCK_ROWS, Convolution, SymbolTable};
 
 use crate::descent::sums::GapSums;
-use crate::grid::factors::Factors;
 use crate::grid::passes::{layout, read_rows, write_rows};
 use crate::levels::gap_cycle::{GapGrid, Shape, cycle};
 use crate::parallel::{self, Tasks};
@@ -57,8 +56,13 @@ pub(super) struct GapSolution {
     pub(super) applications: usize,
 }
 
-/// Maximum number of further cycles.
-const MAX_CYCLES: usize = 2;
+/// Maximum number of further corrections.
+const MAX_CORRECTIONS: usize = 2;
+
+/// Ratio of the error to its goal up to which steps near pools are the first of them.
+///
+/// In nearly full contact they made the error 2.4 to 10 times smaller.
+const STEPS_DO: f64 = 4.0;
 
 /// Ratio of the errors before and after a cycle above which there is no other one.
 const LEAST_FALL: f64 = 0.5;
@@ -80,7 +84,7 @@ impl<'a> Gap<'a> {
         let (mut gap, mut pressure) = (gap, vec![0.0; shape.heights.len()]);
         grids[0].pressure_under(&shape, &gap, &mut pressure, |_, _| ());
         if is_cycle {
-            cycle(grids, 0, &mut gap, &mut pressure);
+            cycle(grids, &mut gap, &mut pressure);
         } else {
             grids[0].relax(&mut gap, &mut pressure);
         }
@@ -89,26 +93,33 @@ impl<'a> Gap<'a> {
 
     /// The solution on the first of `grids` that follows. `response` is L.
     ///
-    /// Cycles go on until its error, in units of √U, is within the `goal`, or no longer falls.
+    /// Corrections go on until its error, in units of √U, is within the `goal`, or no longer falls. They are cycles, but
+    /// the first may be steps near pools where contact `is_nearly_full`.
     pub(super) fn solve(
         mut self,
-        (grids, response): (&mut [GapGrid], &Factors<f32>),
+        (grids, response, is_nearly_full): (&mut [GapGrid], &SymbolTable<f32>, bool),
         (grid, problem): (Grid, &Problem),
         (goal, should_stop): (f64, &dyn Fn() -> bool),
     ) -> GapSolution {
-        let (mut last, mut n_cycles) = (f64::INFINITY, 0);
+        let (mut last, mut n_corrections, mut applications) = (f64::INFINITY, 0, 2);
         loop {
             let pieces = self.fresh(&mut grids[0], (grid, problem.unit()));
             let side = GapSide { grid, unit: problem.unit(), state: &self, pieces };
             let error = side.displace(grids[0].convolution(), response);
             let relative = (error / side.pieces.energy).sqrt();
             let has_fallen = relative < LEAST_FALL * last;
-            if relative <= goal || n_cycles == MAX_CYCLES || !has_fallen || should_stop() {
+            if relative <= goal || n_corrections == MAX_CORRECTIONS || !has_fallen || should_stop() {
                 let ([pressure, gap], sums) = side.admissible(grids[0].convolution(), problem);
-                return GapSolution { pressure, gap, sums, error, applications: 2 + 3 * n_cycles };
+                return GapSolution { pressure, gap, sums, error, applications };
             }
-            cycle(grids, 0, &mut self.gap, &mut self.pressure);
-            (last, n_cycles) = (relative, n_cycles + 1);
+            if is_nearly_full && n_corrections == 0 && relative < STEPS_DO * goal {
+                grids[0].relax(&mut self.gap, &mut self.pressure);
+                applications += 2;
+            } else {
+                cycle(grids, &mut self.gap, &mut self.pressure);
+                (last, applications) = (relative, applications + 3);
+            }
+            n_corrections += 1;
         }
     }
 
@@ -220,7 +231,7 @@ impl GapSide<'_> {
     }
 
     /// Computes the displacement by the change x to the pressure p̂, and returns the bound on the error.
-    fn displace(&self, quick: &mut Convolution<f32>, response: &Factors<f32>) -> f64 {
+    fn displace(&self, quick: &mut Convolution<f32>, response: &SymbolTable<f32>) -> f64 {
         let (unit, closing) = (self.unit, self.pieces.closing);
         let change = |factor: f64, p: f32, g: f32| factor * f64::from(allowed(p, g, closing)) - f64::from(p);
         write_rows(quick, &|i, rows| {
@@ -232,7 +243,7 @@ impl GapSide<'_> {
                 }
             });
         });
-        response.apply(quick);
+        quick.apply_symbol(response);
         let tasks = Tasks::new(self.pieces.factors.iter());
         read_rows(quick, &|i, rows| {
             tasks.run(i, |_| {

@@ -35,12 +35,11 @@ pub(super) struct NearKernel {
 }
 
 impl NearKernel {
-    /// The kernel on `grid`, for gaps in units of `unit`.
-    pub(super) fn new(kernel: &dyn Kernel, grid: Grid, unit: f64) -> Self {
+    /// The kernel with these `weights` on `grid`, for gaps in units of `unit`.
+    pub(super) fn new(weights: &NearWeights, grid: Grid, unit: f64) -> Self {
         let sizes = <f32 as Real>::SIZES[0];
-        let (weights, reach) = (lattice_kernel(kernel), RADIUS as i32);
-        let ratio = grid.nx() as f64 / LATTICE as f64;
-        let factor = unit * ratio;
+        let (NearWeights(weights), reach) = (weights, RADIUS as i32);
+        let factor = unit * grid.nx() as f64 / LATTICE as f64;
         let closing = (factor * weights[0][0]) as f32;
         let weight = |dx: i32, dy: i32| {
             let is_near = dx * dx + dy * dy <= reach * reach;
@@ -65,17 +64,21 @@ impl NearKernel {
 }
 
 /// Weights of K at offsets from 0 to [`RADIUS`] along y and x, on a lattice that is one cell.
-fn lattice_kernel(kernel: &dyn Kernel) -> Vec<Vec<f64>> {
-    let symbol = kernel.symbol(Grid::square(LATTICE).expect("a small grid"));
-    let wave = |k: usize| k.min(LATTICE - k);
-    let inverse = |kx: usize, ky: usize| if kx + ky == 0 { 0.0 } else { symbol(wave(kx), wave(ky)).recip() };
-    let cosine = |k: usize, d: usize| (std::f64::consts::TAU * (k * d) as f64 / LATTICE as f64).cos();
-    let along_x: Vec<Vec<f64>> = (0..LATTICE)
-        .map(|ky| (0..=RADIUS).map(|dx| (0..LATTICE).map(|kx| inverse(kx, ky) * cosine(kx, dx)).sum()).collect())
-        .collect();
-    let weight = |dx: usize, dy: usize| (0..LATTICE).map(|ky| along_x[ky][dx] * cosine(ky, dy)).sum::<f64>();
-    let n = (LATTICE * LATTICE) as f64;
-    (0..=RADIUS).map(|dy| (0..=RADIUS).map(|dx| weight(dx, dy) / n).collect()).collect()
+pub(super) struct NearWeights(Vec<Vec<f64>>);
+
+impl NearWeights {
+    pub(super) fn of(kernel: &dyn Kernel) -> Self {
+        let symbol = kernel.symbol(Grid::square(LATTICE).expect("a small grid"));
+        let wave = |k: usize| k.min(LATTICE - k);
+        let inverse = |kx: usize, ky: usize| if kx + ky == 0 { 0.0 } else { symbol(wave(kx), wave(ky)).recip() };
+        let cosine = |k: usize, d: usize| (std::f64::consts::TAU * (k * d) as f64 / LATTICE as f64).cos();
+        let along_x: Vec<Vec<f64>> = (0..LATTICE)
+            .map(|ky| (0..=RADIUS).map(|dx| (0..LATTICE).map(|kx| inverse(kx, ky) * cosine(kx, dx)).sum()).collect())
+            .collect();
+        let weight = |dx: usize, dy: usize| (0..LATTICE).map(|ky| along_x[ky][dx] * cosine(ky, dy)).sum::<f64>();
+        let n = (LATTICE * LATTICE) as f64;
+        Self((0..=RADIUS).map(|dy| (0..=RADIUS).map(|dx| weight(dx, dy) / n).collect()).collect())
+    }
 }
 
 /// The gap and the pressure of tiles around pools.

@@ -15,7 +15,7 @@ use crate::paper::error::GaussSeidelError;
 use crate::paper::half_space::HalfSpace;
 use crate::paper::params::GaussSeidelParams;
 use crate::paper::solve::solve_gauss_seidel;
-use crate::parallel::in_pool;
+use crate::parallel::{self, in_pool};
 use crate::problem::contact_problem::ContactProblem;
 use crate::problem::method::Method;
 use crate::problem::method_reason::MethodReason;
@@ -138,7 +138,8 @@ impl<'a> Plan<'a> {
             (Method::Uniform, solution)
         };
         let how = how(method, reason);
-        let summit = Summit::on_grid(problem.heights.surface(), (heights, heights.max()), problem.boundary());
+        let highest = parallel::maximum(heights.values(), f64::NEG_INFINITY);
+        let summit = Summit::on_grid(problem.heights.surface(), (heights, highest), problem.boundary());
         let solved = GridSolved::new(solution, heights, Response::Kernel(problem.kernel), problem.hardness);
         let solution = Solution::new(how, summit, Box::new(solved));
         // NaN counts as infinite.
