@@ -15,7 +15,7 @@ use crate::descent::values::Values;
 use crate::grid::operators::no_operators;
 use crate::levels::gap_cycle::{GapGrid, Shape};
 use crate::levels::gap_prolongation::prolong_gap;
-use crate::levels::gap_side::{self, Gap};
+use crate::levels::gap_side::{self, GapState};
 use crate::levels::grids::GridLevels;
 use crate::levels::nested::{History, Levels as _, Nested};
 use crate::parallel;
@@ -157,7 +157,8 @@ fn climb<'a>(
     for above in (1..LEVELS).rev() {
         let grid = grids.grid(above);
         nested.announce(grid, above);
-        let Gap { gap: better, mut pressure, .. } = Gap::improved(gap, shape(above), (&mut on_grids[above..], true));
+        let GapState { gap: better, mut pressure, .. } =
+            GapState::improved(gap, shape(above), (&mut on_grids[above..], true));
         gap_side::allow(&mut pressure, &better, (grid.nx(), on_grids[above].closing()));
         history.levels.push(level_info(grid, 2));
         history.coarser = Some(LevelValues {
@@ -173,7 +174,7 @@ fn climb<'a>(
     let (heights, grid) = (grids.heights(0), grids.grid(0));
     nested.announce(grid, 0);
     let (is_cycle, goal) = (!is_nearly_full, goal_of(nested));
-    let improved = Gap::improved(gap, shape(0), (&mut on_grids, is_cycle));
+    let improved = GapState::improved(gap, shape(0), (&mut on_grids, is_cycle));
     let should_stop = || nested.observer.should_stop();
     let solution = improved.solve((&mut on_grids, &response, is_nearly_full), (grid, problem), (goal, &should_stop));
     let start = Start::Known { pressure: Values::Double(solution.pressure), gap: Values::Double(solution.gap) };

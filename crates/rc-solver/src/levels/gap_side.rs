@@ -68,7 +68,7 @@ const STEPS_DO: f64 = 4.0;
 const LEAST_FALL: f64 = 0.5;
 
 /// A gap on a grid, and the pressure σ0 + K (h + g) that it was last known to have.
-pub(super) struct Gap<'a> {
+pub(super) struct GapState<'a> {
     pub(super) shape: Shape<'a>,
     /// In units of [`Problem::unit`].
     pub(super) gap: Vec<f32>,
@@ -76,7 +76,7 @@ pub(super) struct Gap<'a> {
     pub(super) pressure: Vec<f32>,
 }
 
-impl<'a> Gap<'a> {
+impl<'a> GapState<'a> {
     /// A `gap` that was interpolated to the first of `grids`, improved.
     ///
     /// Either a cycle does, or only steps near pools.
@@ -212,7 +212,7 @@ pub(super) fn allow(pressure: &mut [f32], gap: &[f32], (nx, closing): (usize, f3
 struct GapSide<'a> {
     grid: Grid,
     unit: f64,
-    state: &'a Gap<'a>,
+    state: &'a GapState<'a>,
     pieces: Pieces,
 }
 
@@ -226,7 +226,7 @@ impl GapSide<'_> {
 
     /// Gap and pressure of block `i`.
     fn block(&self, i: usize) -> [&[f32]; 2] {
-        let (len, Gap { gap, pressure, .. }) = (BLOCK_ROWS * self.grid.nx(), self.state);
+        let (len, GapState { gap, pressure, .. }) = (BLOCK_ROWS * self.grid.nx(), self.state);
         [gap, pressure].map(|values| &values[i * len..values.len().min((i + 1) * len)])
     }
 
