@@ -196,6 +196,7 @@ impl<'a> TileLevels<'a> {
             None => values.contact_area(grid),
         };
         let plastic = values.plastic_edges(grid);
+        drop(gap);
         let mut info = outcome.info(&self.problem, history.levels, history.coarser);
         if self.boundary() == Boundary::Free {
             info.mean_displacement += displacement_of_patch(&elements, &pressure, grid);

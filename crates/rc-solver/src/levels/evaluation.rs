@@ -10,6 +10,7 @@ use crate::descent::operators::{read_blocks, write_blocks};
 use crate::descent::outcome::Outcome;
 use crate::descent::rows::ElementValues;
 use crate::descent::sums::GapSums;
+use crate::descent::values::Values;
 use crate::levels::operator_error::{OperatorError, PressureScale};
 use crate::levels::tiles::TileLevels;
 use crate::parallel;
@@ -30,7 +31,7 @@ pub(super) struct Evaluation {
     pub(super) pressed: Option<MeshStart>,
     /// The candidates at contact, if only their gap is kept.
     pub(super) kept: Option<Mesh>,
-    pub(super) gap: Vec<f64>,
+    pub(super) gap: Values,
     /// Outcome with a certificate that includes the error of the certifying operator.
     pub(super) outcome: Outcome,
     pub(super) scale: PressureScale,
@@ -111,11 +112,12 @@ impl Evaluated<'_, '_> {
         let error = OperatorError::of(levels.certified().split(), &scale, problem.bounds.control);
         outcome.iteration_error = outcome.certificate.energy;
         outcome.certificate = error.added_to(outcome.certificate, problem.h_range);
-        let mut kept = None;
-        if let Some(operator) = operator {
+        let (mut kept, mut gap) = (None, Values::Double(gap));
+        if let Some(mut operator) = operator {
+            operator.end();
             let lows: Vec<f32> = read.iter().flat_map(|block| block.lows).collect();
             let mesh = self.at_contact(&lows, near_contact(&outcome, levels));
-            gap = self.gap_on(&mesh, &*operator);
+            gap = self.gap_on(&mesh, &*operator, outcome.contact_gap);
             kept = Some(mesh);
         }
         (Evaluation { pressed, kept, gap, outcome, scale, error, scaling: scaling.unwrap_or(1.0) }, base)
@@ -148,11 +150,13 @@ impl Evaluated<'_, '_> {
     }
 
     /// The gap on some of the candidates, whose displacement is computed again.
-    fn gap_on(&self, kept: &Mesh, operator: &dyn GapOperator) -> Vec<f64> {
+    ///
+    /// Differences from the gap of contact are kept.
+    fn gap_on(&self, kept: &Mesh, operator: &dyn GapOperator, origin: f64) -> Values {
         let _running = Step::FreshGaps.begin();
         let Self { levels, elements, .. } = *self;
         let (layout, offset) = (elements.layout(), levels.problem.offset());
-        let mut gap = vec![0.0; kept.n_own()];
+        let mut gap = vec![0.0_f32; kept.n_own()];
         let mut rest = &mut *gap;
         let is_kept = |&[column, row]: &[u32; 2]| kept.finest().find(column.into(), row.into()).is_some();
         // Tiles of both meshes have the same order.
@@ -170,11 +174,11 @@ impl Evaluated<'_, '_> {
             let of_kept = places.zip(tiles).filter(|(place, _)| is_kept(place));
             for (gap, (_, (heights, displacement))) in gap.as_chunks_mut::<CELLS>().0.iter_mut().zip(of_kept) {
                 for ((g, h), v) in gap.iter_mut().zip(heights).zip(displacement) {
-                    *g = v - (h - offset);
+                    *g = (v - (h - offset) - origin) as f32;
                 }
             }
         });
-        gap
+        Values::Single { origin, differences: gap }
     }
 
     /// Changes a block of the gap, which is not kept if it has no room.

@@ -243,17 +243,21 @@ impl<'s, 'a> FinestLevel<'s, 'a> {
             return Mesh::new(elements.with(&places), levels.ranks());
         }
         let elements = elements.elements();
-        let fields = ContactFields { elements, pressure, beyond: 0.0, gap, contact_gap: outcome.contact_gap };
+        let fields =
+            ContactFields { elements, pressure, beyond: 0.0, gap: &gap.all(), contact_gap: outcome.contact_gap };
         levels.refined(&fields, false).with(&places).into()
     }
 
     fn into_solved(self, evaluation: Evaluation) -> (SolvedLevel, PressureScale) {
         let Self { candidates, current, info, work, .. } = self;
         let Evaluation { pressed, kept, gap, outcome, scale, .. } = evaluation;
-        let MeshStart { elements: pressing, pressure } = pressed.unwrap_or(current);
+        let pressed = pressed.unwrap_or(current);
         let (evaluated, covered) = (candidates.n_cells(), candidates.n_finest());
         let elements = kept.unwrap_or(candidates);
-        let pressure = pressing.moved(&elements, &pressure, 0.0);
+        let pressure = pressed.elements.moved(&elements, &pressed.pressure, 0.0);
+        // The pressure is not kept twice beside the gap.
+        drop(pressed);
+        let gap = gap.into_all();
         (SolvedLevel { elements, pressure, gap, outcome, evaluated, covered, info, work }, scale)
     }
 }
@@ -298,21 +302,20 @@ impl NearContact {
         let on_all = pressed.as_ref().filter(|pressed| pressed.pressure.len() == gap.len());
         let is_near = |sides: [usize; 2], place: [u32; 2], mut cells: Range<usize>| {
             current.elements.has(sides, place)
-                || cells.any(|i| gap[i] < near || on_all.is_some_and(|pressed| pressed.pressure[i] > 0.0))
+                || cells.any(|i| gap.at(i) < near || on_all.is_some_and(|pressed| pressed.pressure[i] > 0.0))
         };
         let elements = candidates.chosen(is_near);
         // The vectors are moved one after the other. Nothing presses on values that fill up a level.
         let lowest = out_of_reach(levels, &elements);
         let spares = levels.spares(elements.n_cells());
-        let values = |doubles, origin| {
-            let doubles = Values::Double(doubles);
-            if spares { doubles.to_single(origin) } else { doubles }
+        let as_spared = |values: Values, origin| {
+            if spares && !values.is_single() { values.to_single(origin) } else { values }
         };
-        let moved_gap = candidates.moved(&elements, &gap, levels.problem.offset() - lowest);
+        let moved_gap = gap.moved([candidates, &elements], levels.problem.offset() - lowest);
         drop(gap);
-        let gap = values(moved_gap, outcome.contact_gap);
+        let gap = as_spared(moved_gap, outcome.contact_gap);
         let MeshStart { elements: pressing, pressure } = pressed.as_ref().unwrap_or(current);
-        let pressure = values(pressing.moved(&elements, pressure, 0.0), 0.0);
+        let pressure = as_spared(Values::Double(pressing.moved(&elements, pressure, 0.0)), 0.0);
         // On demand they take a tenth of the time of the descent. Up to twice the number they are kept.
         let are_kept = !levels.spares(elements.n_cells() / 2);
         let heights = are_kept.then(|| element_heights(&levels.data.heights, &elements, lowest));

@@ -19,11 +19,18 @@ pub(crate) trait GapOperator: BlockOperator<f64> {
     ///
     /// Short-range parts are not included. Values are tile by tile, and tiles row by row.
     fn base_displacement(&self) -> Vec<f64>;
+
+    /// Frees what the last application has left and [`BlockOperator::read`] does not need. Nothing is written any more.
+    fn end(&mut self);
 }
 
 impl<T: Real + Into<f64>> GapOperator for ScaledOperator<'_, T> {
     fn base_displacement(&self) -> Vec<f64> {
         Self::base_displacement(self)
+    }
+
+    fn end(&mut self) {
+        Self::end(self);
     }
 }
 

@@ -41,6 +41,11 @@ impl<'a, T: Real + Into<f64>> ScaledOperator<'a, T> {
         Self { operator: TileOperator::new(hierarchy, tables), reference, uniform, unit }
     }
 
+    /// Frees what reading does not need: see [`TileOperator::end`].
+    pub(crate) fn end(&mut self) {
+        self.operator.end();
+    }
+
     /// Smooth remainder on the base grid, in λ: see [`TileOperator::base_displacement`].
     pub(crate) fn base_displacement(&self) -> Vec<f64> {
         self.operator.base_displacement().iter().map(|&v| self.unit * v.into() + self.uniform).collect()

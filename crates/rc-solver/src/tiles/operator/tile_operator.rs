@@ -116,6 +116,17 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
         &self.displacements[0]
     }
 
+    /// Frees the values of all levels but those that reading needs. Nothing is written any more.
+    ///
+    /// Elements of several sizes read all levels.
+    pub(crate) fn end(&mut self) {
+        if self.hierarchy.leaves.is_empty() {
+            self.densities = Vec::new();
+            let last = self.hierarchy.n_levels() - 1;
+            self.displacements[..last].iter_mut().for_each(|values| *values = Vec::new());
+        }
+    }
+
     fn set_ghosts(&mut self) {
         let elements = self.hierarchy.elements();
         for (i, (leaves, ghosts)) in self.hierarchy.leaves.iter().zip(&mut self.ghosts).enumerate() {
