@@ -3,12 +3,9 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS};
-
 use crate::descent::layout::BlockLayout;
 use crate::descent::rows::ElementValues;
 use crate::parallel;
-use crate::tiles::mesh::Mesh;
 
 /// A value for each element.
 #[derive(Clone)]
@@ -95,27 +92,6 @@ impl Values {
         match self {
             Self::Double(values) => values[i],
             Self::Single { origin, differences } => origin + f64::from(differences[i]),
-        }
-    }
-
-    /// Values on the elements of another mesh, as [`Mesh::moved`] gives them.
-    ///
-    /// In single precision, all elements of both meshes have one size, and are on one rank.
-    pub(crate) fn moved(&self, [from, to]: [&Mesh; 2], elsewhere: f64) -> Self {
-        match self {
-            Self::Double(values) => Self::Double(from.moved(to, values, elsewhere)),
-            Self::Single { origin, differences } => {
-                let mut moved = vec![(elsewhere - origin) as f32; to.n_own()];
-                let blocks = to.finest().places().chunks(BLOCK_TILES).zip(moved.chunks_mut(BLOCK_CELLS));
-                parallel::for_each(blocks, |(places, cells)| {
-                    for ([column, row], cells) in places.iter().zip(cells.chunks_mut(CELLS)) {
-                        if let Some(tile) = from.finest().find((*column).into(), (*row).into()) {
-                            cells.copy_from_slice(&differences[tile * CELLS..][..CELLS]);
-                        }
-                    }
-                });
-                Self::Single { origin: *origin, differences: moved }
-            }
         }
     }
 

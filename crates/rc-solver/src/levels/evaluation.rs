@@ -25,6 +25,11 @@ use crate::tiles::prolongation::MeshStart;
 /// Small changes of the pressure then do not add others.
 pub(super) const CANDIDATE_MARGIN: f64 = 7e-3;
 
+/// Part of the margin of elements near contact, where memory is spared.
+///
+/// It saves 5 to 10 % of these elements. One of seven surfaces (H = 0.3) then took another round, and 1.2 times as long.
+const SPARED_MARGIN: f64 = 0.25;
+
 /// The gap on the candidates, and the certificate that follows from it.
 pub(super) struct Evaluation {
     /// The pressure, if it is not the one that was given.
@@ -116,7 +121,7 @@ impl Evaluated<'_, '_> {
         if let Some(mut operator) = operator {
             operator.end();
             let lows: Vec<f32> = read.iter().flat_map(|block| block.lows).collect();
-            let mesh = self.at_contact(&lows, near_contact(&outcome, levels));
+            let mesh = self.at_contact(&lows, near_contact(&outcome, levels, true));
             gap = self.gap_on(&mesh, &*operator, outcome.contact_gap);
             kept = Some(mesh);
         }
@@ -226,14 +231,15 @@ fn set_pressure(elements: &Mesh, block: Range<usize>, given: &MeshStart, cells: 
     }
 }
 
-/// The gap below which elements are near contact.
-pub(super) fn near_contact(outcome: &Outcome, levels: &TileLevels<'_>) -> f64 {
+/// The gap below which elements are near contact, which are fewer if memory `is_spared`.
+pub(super) fn near_contact(outcome: &Outcome, levels: &TileLevels<'_>, is_spared: bool) -> f64 {
     // Elements that are nearer to contact than the error may still come into contact.
+    let part = if is_spared { SPARED_MARGIN } else { 1.0 };
     let error = match outcome.mean_pressure {
         // If coarser levels have lost a contact that they hardly resolve, there is no pressure. The contact begins
         // anew.
         0.0 => CANDIDATE_MARGIN * (levels.problem.h_max - levels.problem.h_mean),
-        _ => outcome.certificate.penetration * levels.problem.h_range,
+        _ => part * outcome.certificate.penetration * levels.problem.h_range,
     };
     outcome.contact_gap + error
 }

@@ -297,7 +297,7 @@ impl NearContact {
     fn choose(candidates: &Mesh, current: &MeshStart, evaluation: Evaluation, levels: &TileLevels<'_>) -> Self {
         let Evaluation { pressed, kept, gap, outcome, .. } = evaluation;
         let candidates = kept.as_ref().unwrap_or(candidates);
-        let near = near_contact(&outcome, levels);
+        let near = near_contact(&outcome, levels, kept.is_some());
         // No other elements than those of the last descent press, unless pressures were brought to all candidates.
         let on_all = pressed.as_ref().filter(|pressed| pressed.pressure.len() == gap.len());
         let is_near = |sides: [usize; 2], place: [u32; 2], mut cells: Range<usize>| {
@@ -308,10 +308,12 @@ impl NearContact {
         // The vectors are moved one after the other. Nothing presses on values that fill up a level.
         let lowest = out_of_reach(levels, &elements);
         let spares = levels.spares(elements.n_cells());
-        let as_spared = |values: Values, origin| {
-            if spares && !values.is_single() { values.to_single(origin) } else { values }
+        let as_spared = |values: Values, origin| match (spares, values.is_single()) {
+            (true, false) => values.to_single(origin),
+            (false, true) => Values::Double(values.into_all()),
+            _ => values,
         };
-        let moved_gap = gap.moved([candidates, &elements], levels.problem.offset() - lowest);
+        let moved_gap = candidates.moved_vector(&elements, &gap, levels.problem.offset() - lowest);
         drop(gap);
         let gap = as_spared(moved_gap, outcome.contact_gap);
         let MeshStart { elements: pressing, pressure } = pressed.as_ref().unwrap_or(current);

@@ -20,7 +20,8 @@ pub(crate) trait GapOperator: BlockOperator<f64> {
     /// Short-range parts are not included. Values are tile by tile, and tiles row by row.
     fn base_displacement(&self) -> Vec<f64>;
 
-    /// Frees what the last application has left and [`BlockOperator::read`] does not need. Nothing is written any more.
+    /// Frees what the last application has left and [`BlockOperator::read`] does not need, which includes the displacement
+    /// of the base grid. Nothing is written any more.
     fn end(&mut self);
 }
 

@@ -5,8 +5,10 @@ use std::ops::{Deref, Range};
 use std::sync::Arc;
 
 use rc_comm::Ranks;
-use rc_quadtree::{BLOCK_TILES, CELLS, Elements, TileSet};
+use rc_quadtree::{BLOCK_CELLS, BLOCK_TILES, CELLS, Elements, TileSet};
 
+use crate::descent::values::Values;
+use crate::parallel;
 use crate::tiles::deal::Deal;
 use crate::tiles::part::{Part, append_around, pack_tile, unpack_tiles};
 
@@ -167,6 +169,27 @@ impl Mesh {
         let own = self.own_places().iter().copied().zip(values.as_chunks().0);
         to.deliver(own.filter(|&(place, _)| to.own_tile(place).is_none()), &mut result);
         result
+    }
+
+    /// A vector on the elements of `to`, as [`Mesh::moved`] gives it.
+    ///
+    /// In single precision, all elements of both meshes have one size, and are on one rank.
+    pub(crate) fn moved_vector(&self, to: &Self, values: &Values, elsewhere: f64) -> Values {
+        match values {
+            Values::Double(values) => Values::Double(self.moved(to, values, elsewhere)),
+            Values::Single { origin, differences } => {
+                let mut moved = vec![(elsewhere - origin) as f32; to.n_own()];
+                let blocks = to.finest().places().chunks(BLOCK_TILES).zip(moved.chunks_mut(BLOCK_CELLS));
+                parallel::for_each(blocks, |(places, cells)| {
+                    for ([column, row], cells) in places.iter().zip(cells.chunks_mut(CELLS)) {
+                        if let Some(tile) = self.finest().find((*column).into(), (*row).into()) {
+                            cells.copy_from_slice(&differences[tile * CELLS..][..CELLS]);
+                        }
+                    }
+                });
+                Values::Single { origin: *origin, differences: moved }
+            }
+        }
     }
 
     /// The index of a tile of the finest level among those that this rank has.

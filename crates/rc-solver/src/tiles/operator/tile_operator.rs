@@ -118,9 +118,11 @@ impl<T: Real, B: Borrow<Tables<T>> + Sync> TileOperator<T, B> {
 
     /// Frees the values of all levels but those that reading needs. Nothing is written any more.
     ///
-    /// Elements of several sizes read all levels.
+    /// The displacement of the base grid is lost. Elements of several sizes read all levels.
     pub(crate) fn end(&mut self) {
         if self.hierarchy.leaves.is_empty() {
+            let n_tails = self.tails.len().saturating_sub(1);
+            self.tails[..n_tails].iter_mut().for_each(|(_, tails)| *tails = Vec::new());
             self.densities = Vec::new();
             let last = self.hierarchy.n_levels() - 1;
             self.displacements[..last].iter_mut().for_each(|values| *values = Vec::new());
