@@ -22,7 +22,7 @@ pub struct Large {
 impl Large {
     /// Solves the contact on a grid of `side` elements per side.
     ///
-    /// At 65536² this takes about 6 GB, and at 131072² about 17 GB. No field is ever stored as a whole.
+    /// At 65536² this takes about 6 GB, and at 131072² about 16 GB. No field is ever stored as a whole.
     ///
     /// # Errors
     /// When the surface cannot be made, or the contact cannot be solved.
