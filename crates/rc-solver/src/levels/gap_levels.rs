@@ -35,6 +35,9 @@ const NEARLY_FULL: f64 = 0.95;
 const HEAVY: f64 = 0.8;
 const MOST_EDGES: f64 = 0.13;
 
+/// Ratio of edges on a finer grid to this limit from which the base grid does not show them, for edges as long.
+const MORE_EDGES: f64 = 1.5;
+
 /// Minimum number of elements along a side of the finest grid.
 const LEAST_SIDE: usize = 512;
 
@@ -57,7 +60,9 @@ pub(super) fn solve<'a>(grids: &GridLevels<'a>, kernel: &dyn Kernel, nested: &Ne
     }
     let begun = nested.climb(grids, grids.first(), LEVELS);
     let (base, history) = nested.solve(grids, begun);
-    let contact = BaseContact::of(&base.0);
+    let pressure = base.0.pressure();
+    let contact = GridContact::of(base.0.grid(), |i| pressure[i] > 0.0);
+    drop(pressure);
     if !nested.observer.should_stop()
         && contact.is_heavy()
         && let Some(solved) = climb(grids, kernel, nested, (&base.0, &history), contact.is_nearly_full())
@@ -99,33 +104,24 @@ fn is_plain(grids: &GridLevels<'_>, kernel: &dyn Kernel, nested: &Nested<'_>) ->
         && has_grids()
 }
 
-/// How much of the base grid is in contact.
-struct BaseContact {
+/// How much of a grid is in contact.
+struct GridContact {
     /// The part of its elements.
     fraction: f64,
     /// Edges between an element in contact and one without, for each element.
     edges: f64,
 }
 
-impl BaseContact {
-    fn of(base: &Descent<'_>) -> Self {
-        let (pressure, [nx, ny]) = (base.pressure(), [base.grid().nx(), base.grid().ny()]);
-        let row = |y: usize| &pressure[y % ny * nx..][..nx];
+impl GridContact {
+    fn of(grid: Grid, is_contact: impl Fn(usize) -> bool + Sync) -> Self {
+        let [nx, ny] = [grid.nx(), grid.ny()];
+        let at = |x: usize, y: usize| is_contact(y % ny * nx + x % nx);
         let counts = parallel::map(0..ny, |y| {
-            let (here, above, is_contact) = (row(y), row(y + 1), |p: &f64| *p > 0.0);
-            let edges = |pairs: &mut dyn Iterator<Item = (&f64, &f64)>| {
-                pairs.filter(|(a, b)| is_contact(a) != is_contact(b)).count()
-            };
-            let next = here.iter().cycle().skip(1);
-            [
-                here.iter().filter(|p| is_contact(p)).count(),
-                edges(&mut here.iter().zip(next)) + edges(&mut here.iter().zip(above)),
-            ]
+            let edges = |x: usize| usize::from(at(x, y) != at(x + 1, y)) + usize::from(at(x, y) != at(x, y + 1));
+            [(0..nx).filter(|&x| at(x, y)).count(), (0..nx).map(edges).sum()]
         });
-        let [fraction, edges] = [0, 1].map(|k| {
-            let count: usize = counts.iter().map(|count| count[k]).sum();
-            count as f64 / (nx * ny) as f64
-        });
+        let [fraction, edges] =
+            [0, 1].map(|k| counts.iter().map(|count| count[k]).sum::<usize>() as f64 / grid.len() as f64);
         Self { fraction, edges }
     }
 
@@ -171,7 +167,8 @@ fn climb<'a>(
             penetration: problem.h_max - problem.h_mean - problem.unit() * mean_of(&better, grid.nx(), |g| g),
             friction: None,
         });
-        if nested.observer.should_stop() {
+        let edges = GridContact::of(grid, |i| pressure[i] > 0.0).edges * f64::from(1 << (LEVELS - above));
+        if nested.observer.should_stop() || edges > MORE_EDGES * MOST_EDGES {
             return None;
         }
         gap = prolong_gap([pressure, better], problem.unit(), [grid, grids.grid(above - 1)]);
